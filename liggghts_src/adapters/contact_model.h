@@ -1,0 +1,337 @@
+// The contact model that LIGGGHTS' pair and wall loops call: geometry -> record -> normal, sliding, rolling -> sums.
+// Takes the place of LIGGGHTS::ContactModels::ContactModel for the jkr styles; stock tangential and rolling models
+// plug in beside ours. Spheres only. A wall has no spin of its own.
+// SPDX-License-Identifier: GPL-2.0-or-later
+
+#ifndef PYJKR_ADAPTERS_CONTACT_MODEL_H
+#define PYJKR_ADAPTERS_CONTACT_MODEL_H
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "material_table.h"
+#include "normal_model_jkr.h"
+#include "radius_range.h"
+#include "rolling_model_krijt.h"
+#include "tangential_model_jkr.h"
+
+namespace pyjkr {
+
+namespace lcm = LIGGGHTS::ContactModels;
+
+// Marks a slot that a model of LIGGGHTS fills.
+template <class Model>
+struct Stock : Model {
+  static constexpr bool is_jkr = false;
+  static constexpr bool is_krijt = false;
+  using Model::Model;
+};
+
+// Room beyond contact in which a contact that broke within the last step is still seen, as a part of the radius:
+// the largest way of one step at 20 steps a collision and an overlap of R/2 (Hertz: 2.94 delta_max/20), rounded up.
+constexpr double kEventBand = 0.08;
+
+template <class Style>
+class ContactModel : public lcm::ContactModelBase {
+  using Law = typename Style::Law;
+  using Tangential = typename Style::Tangential;
+  using Rolling = typename Style::Rolling;
+  using Data = lcm::SurfacesIntersectData;
+  using Forces = lcm::ForceData;
+
+ public:
+  ContactModel(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t)
+      : ContactModelBase(lmp, is_wall),
+        simulator_(lmp),
+        pair_gran_(dynamic_cast<LAMMPS_NS::PairGran*>(setup)),
+        wall_(dynamic_cast<LAMMPS_NS::FixWallGran*>(setup)),
+        surface_(lmp, setup, this),
+        materials_(lmp),
+        normal_(lmp),
+        tangential_(lmp, setup, this),
+        rolling_(lmp, setup, this) {}
+
+  int64_t hashcode() { return Style::hash(); }
+  double stressStrainExponent() { return 1.5; }
+  void tally_pp(double, int, int, int) override {}
+  void tally_pw(double, int, int, int) override {}
+  bool checkSurfaceIntersect(Data& sidata) { return surface_.checkSurfaceIntersect(sidata); }
+  void endSurfacesIntersect(Data& sidata, LAMMPS_NS::TriMesh* mesh, Forces& i, Forces&) {
+    surface_.endSurfacesIntersect(sidata, mesh, i.delta_F);
+  }
+  void beginPass(Data&, Forces&, Forces&) {}
+  void endPass(Data&, Forces&, Forces&) {}
+
+  void registerSettings(Settings& settings) {
+    settings.registerOnOff("computeElasticPotential", elastic_potential_, false);
+    settings.registerOnOff("computeDissipatedEnergy", dissipated_energy_, false);
+    normal_.registerSettings(settings);
+    if constexpr (!Tangential::is_jkr) tangential_.registerSettings(settings);
+    rolling_.registerSettings(settings);
+  }
+
+  void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
+    if (elastic_potential_ || dissipated_energy_)
+      simulator_.error->all(FLERR, (name() + ": " + (elastic_potential_ ? "computeElasticPotential" : "computeDissipatedEnergy") +
+                         " is not available with the jkr models. Remove the keyword").c_str());
+    normal_.postSettings(setup);
+    if constexpr (!Tangential::is_jkr) tangential_.postSettings(setup, this);
+    if constexpr (Rolling::is_krijt)
+      rolling_.postSettings(setup);
+    else
+      rolling_.postSettings(setup, this);
+  }
+
+  void connectToProperties(PropertyRegistry& registry) {
+    if (simulator_.force->cg_active()) simulator_.error->all(FLERR, (name() + ": coarse-graining is not available with the jkr models").c_str());
+    RequiredProperties required;
+    required.friction = Tangential::is_jkr;
+    if constexpr (Rolling::is_krijt) {
+      required.friction = required.friction || rolling_.needs_friction();
+      required.rolling = true;
+    }
+    materials_.read(registry, name(), required);
+    if constexpr (!Tangential::is_jkr) tangential_.connectToProperties(registry);
+    if constexpr (!Rolling::is_krijt) rolling_.connectToProperties(registry);
+    const RadiusRange radii = radius_range(simulator_);
+    claim_room(radii.smallest, radii.largest);
+  }
+
+  // Overlapping surfaces.
+  void surfacesIntersect(Data& sidata, Forces& i, Forces& j) { contact(sidata, i, j); }
+
+  // Surfaces apart but near: a neck, a contact that has just broken, or nothing.
+  void surfacesClose(Data& sidata, Forces& i, Forces& j) {
+    double* const history = sidata.contact_history;
+    const bool update_history = sidata.computeflag && sidata.shearupdate;
+    if (Law::has_neck) {
+      if (!normal_.has_contact(history)) return release(sidata);
+    } else if (!update_history || !normal_.event_correction() || !was_touching(sidata)) {
+      return release(sidata);
+    }
+    complete_geometry(sidata);
+    const PairProperties pair = pair_of(sidata);
+    const double overlap = sidata.radsum - sidata.r;
+    if (Law::has_neck && overlap > Law::breaking_overlap(pair)) {
+      contact(sidata, i, j);
+      sidata.has_force_update = true;
+      return;
+    }
+    if (!update_history) return;
+    if (normal_.event_correction()) {
+      const double vn = separation_speed(sidata);
+      const double force_n = normal_.settle(overlap, previous_overlap(sidata, overlap, vn), vn, pair);
+      add_force(force_n * load(sidata.en), sidata, i, j);
+      sidata.has_force_update = true;
+    }
+    release(sidata);
+  }
+
+  bool contact_match(const std::string kind, const std::string model) {
+    if (kind == "normal") return model == Style::normal_name;
+    if (kind == "tangential") return model == Style::tangential_name;
+    if (kind == "rolling_friction") return model == Style::rolling_name;
+    if (kind == "cohesion") return model == "off";
+    if (kind == "surface") return model == "default";
+    return false;
+  }
+
+ private:
+  Simulator simulator_;
+  LAMMPS_NS::PairGran* pair_gran_;
+  LAMMPS_NS::FixWallGran* wall_;
+  lcm::SurfaceModel<lcm::SURFACE_DEFAULT> surface_;
+  MaterialTable materials_;
+  NormalModelJkr<Law> normal_;
+  Tangential tangential_;
+  Rolling rolling_;
+  bool elastic_potential_ = false;
+  bool dissipated_energy_ = false;
+
+  static std::string name() { return std::string("model ") + Style::normal_name; }
+
+  PairProperties pair_of(const Data& sidata) const {
+    const double radius =
+        sidata.is_wall ? sidata.radi : sidata.radi * sidata.radj / (sidata.radi + sidata.radj);
+    return pair_properties(materials_(sidata.itype, sidata.jtype), radius, sidata.meff);
+  }
+
+  void contact(Data& sidata, Forces& i, Forces& j) {
+    surface_.surfacesIntersect(sidata, i, j);
+    if (sidata.contact_flags) *sidata.contact_flags |= lcm::CONTACT_NORMAL_MODEL;
+    ContactRecord record;
+    record.pair = pair_of(sidata);
+    record.update_history = sidata.computeflag && sidata.shearupdate;
+    const double before = record.update_history ? previous_overlap(sidata, sidata.deltan, sidata.vn) : sidata.deltan;
+    if (Law::has_neck && record.update_history && !normal_.has_contact(sidata.contact_history)) check_room(sidata, record.pair);
+
+    const Vec3 en = load(sidata.en);
+    const double normal_force = normal_.touch(sidata, before, record);
+    sidata.kn = sidata.deltan > 0.0 ? record.normal.elastic_force / sidata.deltan : 0.0;
+    sidata.kt = record.tangential_stiffness;
+    sidata.gammat = record.tangential_damping;
+    sidata.Fn = normal_force;  // what stock sliding and rolling models take their limits from
+    add_force(normal_force * en, sidata, i, j);
+
+    if constexpr (Tangential::is_jkr || Rolling::is_krijt) follow(sidata, en, record);
+    if constexpr (Tangential::is_jkr) {
+      if (sidata.contact_flags) *sidata.contact_flags |= lcm::CONTACT_TANGENTIAL_MODEL;
+      const Vec3 force = tangential_.force(record, sidata.contact_history);
+      add_force(force, sidata, i, j);
+      const Vec3 arm = -cross(en, force);
+      accumulate(sidata.cri * arm, i.delta_torque);
+      if (!sidata.is_wall) accumulate(sidata.crj * arm, j.delta_torque);
+    } else if (sidata.deltan >= 0.0) {
+      tangential_.surfacesIntersect(sidata, i, j);
+    } else if (sidata.contact_history) {
+      tangential_.surfacesClose(sidata, i, j);  // stock sliding knows no neck
+    }
+    if constexpr (Rolling::is_krijt) {
+      if (sidata.contact_flags) *sidata.contact_flags |= lcm::CONTACT_ROLLING_MODEL;
+      const Vec3 moment = rolling_.moment(record, sidata.contact_history);
+      accumulate(moment, i.delta_torque);
+      if (!sidata.is_wall) accumulate(-moment, j.delta_torque);
+    } else if (sidata.deltan >= 0.0) {
+      rolling_.surfacesIntersect(sidata, i, j);
+    } else if (sidata.contact_history) {
+      rolling_.surfacesClose(sidata, i, j);
+    }
+  }
+
+  // Motion of the contact that sliding, rolling and twisting need.
+  void follow(const Data& sidata, const Vec3& en, ContactRecord& record) const {
+    const Vec3 spin_i = load(sidata.omega_i);
+    const double dt = simulator_.update->dt;
+    record.pull_off_force_original = pull_off_force_original(record.pair);
+    record.normal_i_to_j = -en;
+    record.slip_velocity = {sidata.vtr1, sidata.vtr2, sidata.vtr3};
+    record.turn.normal = en;
+    const double inertia_i = 0.4 * sidata.mi * sidata.radi * sidata.radi;
+    if (sidata.is_wall) {
+      record.relative_spin = spin_i;
+      record.size_asymmetry = 1.0;
+      record.reduced_inertia = inertia_i;
+      record.turn.normal_change = {0.0, 0.0, 0.0};
+      record.turn.spin_angle = 0.5 * dt * dot(spin_i, en);
+      return;
+    }
+    const Vec3 spin_j = load(sidata.omega_j);
+    record.relative_spin = spin_i - spin_j;
+    record.size_asymmetry = (sidata.radj - sidata.radi) / sidata.radsum;
+    const double inertia_j = 0.4 * sidata.mj * sidata.radj * sidata.radj;
+    // a frozen partner does not turn: LIGGGHTS says so by handing over the other's mass as the effective one
+    record.reduced_inertia = sidata.meff == sidata.mi   ? inertia_i
+                             : sidata.meff == sidata.mj ? inertia_j
+                                                        : inertia_i * inertia_j / (inertia_i + inertia_j);
+    record.turn.normal_change =
+        (dt * sidata.rinv) * tangential_part(load(sidata.v_i) - load(sidata.v_j), en);
+    record.turn.spin_angle = 0.5 * dt * dot(spin_i + spin_j, en);
+  }
+
+  static void add_force(const Vec3& force, const Data& sidata, Forces& i, Forces& j) {
+    accumulate(force, i.delta_F);
+    if (!sidata.is_wall) accumulate(-force, j.delta_F);
+  }
+
+  static double separation_speed(const Data& sidata) {
+    return dot(load(sidata.v_i) - load(sidata.v_j), load(sidata.en));
+  }
+
+  // Overlap one step ago. Velocity Verlet moves x by exactly v dt with the half-step v handed over; walls: as if flat.
+  double previous_overlap(const Data& sidata, double overlap, double vn) const {
+    if (sidata.is_wall) return overlap + vn * simulator_.update->dt;
+    return sidata.radsum - norm(load(sidata.delta) - simulator_.update->dt * (load(sidata.v_i) - load(sidata.v_j)));
+  }
+
+  bool was_touching(const Data& sidata) const {
+    if (sidata.is_wall) return sidata.deltan + separation_speed(sidata) * simulator_.update->dt > 0.0;
+    const Vec3 before = load(sidata.delta) - simulator_.update->dt * (load(sidata.v_i) - load(sidata.v_j));
+    return dot(before, before) < sidata.radsum * sidata.radsum;
+  }
+
+  // For pairs that do not overlap LIGGGHTS leaves r, e, masses and spins of an earlier pair in the data.
+  void complete_geometry(Data& sidata) const {
+    if (sidata.is_wall) return;
+    sidata.r = std::sqrt(sidata.rsq);
+    sidata.rinv = 1.0 / sidata.r;
+    for (int k = 0; k < 3; ++k) sidata.en[k] = sidata.delta[k] * sidata.rinv;
+    const int i = sidata.i, j = sidata.j;
+    sidata.omega_i = simulator_.atom->omega[i];
+    sidata.omega_j = simulator_.atom->omega[j];
+    sidata.mi = simulator_.atom->rmass ? simulator_.atom->rmass[i] : simulator_.atom->mass[sidata.itype];
+    sidata.mj = simulator_.atom->rmass ? simulator_.atom->rmass[j] : simulator_.atom->mass[sidata.jtype];
+    if (pair_gran_->fr_pair()) {
+      const double* rigid = pair_gran_->mr_pair();
+      if (rigid[i] > 0.0) sidata.mi = rigid[i];
+      if (rigid[j] > 0.0) sidata.mj = rigid[j];
+    }
+    sidata.meff = sidata.mi * sidata.mj / (sidata.mi + sidata.mj);
+    if (simulator_.atom->mask[i] & pair_gran_->freeze_group_bit()) sidata.meff = sidata.mj;
+    if (simulator_.atom->mask[j] & pair_gran_->freeze_group_bit()) sidata.meff = sidata.mi;
+  }
+
+  // No contact: nothing is remembered.
+  void release(Data& sidata) {
+    if (sidata.contact_flags)
+      *sidata.contact_flags &= ~(lcm::CONTACT_NORMAL_MODEL | lcm::CONTACT_TANGENTIAL_MODEL | lcm::CONTACT_ROLLING_MODEL);
+    if (!sidata.contact_history || !(sidata.computeflag && sidata.shearupdate)) return;
+    normal_.forget(sidata.contact_history);
+    Forces none;
+    if constexpr (Tangential::is_jkr)
+      tangential_.forget(sidata.contact_history);
+    else
+      tangential_.surfacesClose(sidata, none, none);
+    if constexpr (Rolling::is_krijt)
+      rolling_.forget(sidata.contact_history);
+    else
+      rolling_.surfacesClose(sidata, none, none);
+  }
+
+  // Ask the neighbour search for the room that necks and broken contacts need, or say what to change.
+  void claim_room(double smallest_radius, double largest_radius) {
+    double band = normal_.event_correction() ? kEventBand : 0.0;
+    if (Law::has_neck && smallest_radius > 0.0) {
+      double longest = 0.0, longest_of_largest = 0.0;
+      for (int i = 1; i <= materials_.types(); ++i)
+        for (int j = 1; j <= materials_.types(); ++j) {
+          longest = std::max(longest, neck_length(i, j, smallest_radius));
+          longest_of_largest = std::max(longest_of_largest, neck_length(i, j, largest_radius));
+        }
+      if (longest >= smallest_radius)
+        simulator_.error->all(FLERR, (name() + ": the neck of the smallest sphere (radius " + text(smallest_radius) + ") would be " +
+                           text(longest) + " long, longer than the sphere. Raise youngsModulus or lower surfaceEnergy").c_str());
+      if (wall_ && !wall_->is_mesh_wall() && simulator_.neighbor->skin < longest_of_largest)
+        simulator_.error->all(FLERR, (name() + ": the neighbour skin (" + text(simulator_.neighbor->skin) + ") is smaller than the longest neck at a "
+                           "primitive wall (" + text(longest_of_largest) + "): contacts would be lost. Set: neighbor " +
+                           text(1.1 * longest_of_largest) + " bin, or more").c_str());
+      band += 1.05 * longest / smallest_radius;
+    }
+    if (band > 0.0) simulator_.neighbor->register_contact_dist_factor(1.0 + band);
+  }
+
+  double neck_length(int type_i, int type_j, double radius) const {
+    return -rupture_overlap(pair_properties(materials_(type_i, type_j), radius, 0.0));
+  }
+
+  // Spheres smaller than any known before the run may come in later: their necks must still fit the band.
+  void check_room(const Data& sidata, const PairProperties& pair) const {
+    const double neck = -rupture_overlap(pair);
+    const double room = (simulator_.neighbor->contactDistanceFactor - 1.0) * sidata.radsum;
+    if (neck > room)
+      simulator_.error->one(FLERR, (name() + ": a sphere of radius " + text(sidata.radi) + " is smaller than any known before the run; its neck (" +
+                         text(neck) + ") does not fit the contact distance (" + text(room) +
+                         "). Name its insertion fix, or create it, before the run command").c_str());
+  }
+
+  static std::string text(double value) {
+    std::ostringstream stream;
+    stream << value;
+    return stream.str();
+  }
+};
+
+}  // namespace pyjkr
+
+#endif
