@@ -48,7 +48,7 @@ LAMMPS_NS::FixPropertyGlobal* MaterialTable::find(const char* name, Kind kind) c
 LAMMPS_NS::FixPropertyGlobal* MaterialTable::require(const char* name, Kind kind, const char* meaning) const {
   LAMMPS_NS::FixPropertyGlobal* fix = find(name, kind);
   if (!fix) {
-    const std::string values = kind == Kind::per_pair ? number(types()) + " <one value for each pair of atom types>"
+    const std::string values = kind == Kind::per_pair ? number(atom->ntypes) + " <one value for each pair of atom types>"
                                                 : std::string("<one value for each atom type>");
     refuse(std::string("property ") + name + " (" + meaning + ") is missing for " + pair_name(1, types()) +
            " and all others. Add: fix ID all property/global " + name + " " + kind_name(kind) + " " + values);
@@ -90,7 +90,7 @@ void MaterialTable::read(PropertyRegistry& registry, const std::string& caller, 
   if (required.rolling && !hysteresis && !angle)
     refuse("rolling_friction krijt needs property adhesionHysteresis (Delta gamma/gamma) or criticalRollingAngle (rad) for " +
            pair_name(1, n) + " and all others, and has neither. Add: fix ID all property/global adhesionHysteresis "
-           "peratomtypepair " + number(n) + " <one value for each pair of atom types>");
+           "peratomtypepair " + number(atom->ntypes) + " <one value for each pair of atom types>");
   if (hysteresis && angle)
     refuse("both adhesionHysteresis and criticalRollingAngle are given for " + pair_name(1, n) +
            " and all others; they set the same critical rolling displacement. Keep exactly one");
