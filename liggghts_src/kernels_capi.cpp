@@ -56,7 +56,7 @@ double pyjkr_square_root_weight(double theta) { return square_root_weight(theta)
 
 double pyjkr_fraction_before_break(double overlap, double previous_overlap, double time_step, double breaking_overlap,
                                    double breaking_force, double mass) {
-  return fraction_before_break({overlap, previous_overlap, 0.0, 0.0, time_step}, breaking_overlap, breaking_force, mass);
+  return fraction_before_break({overlap, previous_overlap, 0.0, time_step}, breaking_overlap, breaking_force, mass);
 }
 
 void pyjkr_turned(const double* stored, const double* normal, const double* normal_change, double spin_angle, double* result) {

@@ -25,9 +25,8 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
 
   void postSettings(LIGGGHTS::IContactHistorySetup* history) {
     if (Law::has_neck) contact_slot_ = history->add_history_value("jkr_contact", "0");
-    // separation speed of the step before, to know the full-step speed without guessing at other forces;
-    // with |speed| goes a flag: a contact's first step has none
-    if (event_correction_) speed_slot_ = history->add_history_value("jkr_separation_speed", "0");
+    // half-step separation speed and own impulse of the step before, see damped_force(); 0: no step before
+    if (event_correction_) speed_slot_ = history->add_history_value("jkr_carried_speed", "0");
   }
 
   bool event_correction() const { return event_correction_; }
@@ -59,21 +58,23 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
     }
     const bool made_now = previous_overlap <= 0.0 && !has_contact(history);
     if (contact_slot_ >= 0) history[contact_slot_] = 1.0;
-    const double previous_speed = history[speed_slot_];
-    history[speed_slot_] = sidata.vn;
-    NormalStep step{sidata.deltan, previous_overlap, sidata.vn, sidata.vn, dt};
+    double force;
     if (made_now) {
+      const NormalStep step{sidata.deltan, previous_overlap, sidata.vn, dt};
       const double theta = fraction_after_make(step);
       record.time_in_contact = theta * dt;
-      return force_of_make<Law>(step, theta, record.normal, pair);
+      force = force_of_make<Law>(step, theta, record.normal, pair);
+    } else {
+      const double carried = history[speed_slot_] != 0.0 ? history[speed_slot_] : sidata.vn;
+      force = damped_force(record.normal.elastic_force, damping, sidata.vn, carried, dt, pair.effective_mass);
     }
-    if (previous_speed != 0.0) step.full_step_speed = 1.5 * sidata.vn - 0.5 * previous_speed;
-    return record.normal.elastic_force - damping * step.full_step_speed;
+    history[speed_slot_] = sidata.vn + dt * force / pair.effective_mass;
+    return force;
   }
 
   // Force on i along e that settles the account of a contact that broke within this step.
   double settle(double overlap, double previous_overlap, double separation_speed, const PairProperties& pair) const {
-    return force_of_break<Law>({overlap, previous_overlap, separation_speed, separation_speed, update->dt}, pair);
+    return force_of_break<Law>({overlap, previous_overlap, separation_speed, update->dt}, pair);
   }
 
  private:
