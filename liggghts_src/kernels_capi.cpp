@@ -19,7 +19,7 @@ struct Contact {
     material.effective_shear_modulus = shear;
     material.surface_energy = material.surface_energy_original = energy;
     material.damping_ratio = damping_ratio;
-    set_length_scales(material, modulus);
+    set_constants(material, modulus);
     pair = pair_properties(material, radius, mass);
   }
 };
@@ -37,10 +37,10 @@ void pyjkr_normal(int n, const double* overlap, int full, double radius, double 
     const NormalState state = normal_state(overlap[k], contact.pair);
     contact_radius[k] = state.contact_radius;
     force[k] = state.elastic_force;
-    damping[k] = full ? FullJkr::damping(overlap[k], state, contact.pair)
-                      : SimplifiedJkr::damping(overlap[k], state, contact.pair);
-    tangential_stiffness[k] = full ? FullJkr::tangential_stiffness(overlap[k], state, contact.pair)
-                                   : SimplifiedJkr::tangential_stiffness(overlap[k], state, contact.pair);
+    const ContactStiffness stiffness = full ? FullJkr::stiffness(overlap[k], state, contact.pair)
+                                            : SimplifiedJkr::stiffness(overlap[k], state, contact.pair);
+    damping[k] = stiffness.damping;
+    tangential_stiffness[k] = stiffness.tangential_stiffness;
   }
 }
 

@@ -149,13 +149,19 @@ class ContactModel : public lcm::ContactModelBase {
   Rolling rolling_;
   bool elastic_potential_ = false;
   bool dissipated_energy_ = false;
+  double last_radius_ = 0.0;
+  double last_inverse_root_ = 0.0;
 
   static std::string name() { return std::string("model ") + Style::normal_name; }
 
-  PairProperties pair_of(const Data& sidata) const {
-    const double radius =
-        sidata.is_wall ? sidata.radi : sidata.radi * sidata.radj / (sidata.radi + sidata.radj);
-    return pair_properties(materials_(sidata.itype, sidata.jtype), radius, sidata.meff);
+  // Radii repeat from contact to contact in all but continuous size distributions: the cube root is kept.
+  PairProperties pair_of(const Data& sidata) {
+    const double radius = sidata.is_wall ? sidata.radi : sidata.radi * sidata.radj / sidata.radsum;
+    if (radius != last_radius_) {
+      last_radius_ = radius;
+      last_inverse_root_ = 1.0 / std::cbrt(radius);
+    }
+    return {&materials_(sidata.itype, sidata.jtype), radius, last_inverse_root_, sidata.meff};
   }
 
   void contact(Data& sidata, Forces& i, Forces& j) {
@@ -164,14 +170,14 @@ class ContactModel : public lcm::ContactModelBase {
     ContactRecord record;
     record.pair = pair_of(sidata);
     record.update_history = sidata.computeflag && sidata.shearupdate;
-    const double before = record.update_history ? previous_overlap(sidata, sidata.deltan, sidata.vn) : sidata.deltan;
     if (Law::has_neck && record.update_history && !normal_.has_contact(sidata.contact_history)) check_room(sidata, record.pair);
 
     const Vec3 en = load(sidata.en);
-    const double normal_force = normal_.touch(sidata, before, record);
+    const double normal_force = normal_.touch(
+        sidata, [this](const Data& data) { return previous_overlap(data, data.deltan, data.vn); }, record);
     sidata.kn = sidata.deltan > 0.0 ? record.normal.elastic_force / sidata.deltan : 0.0;
-    sidata.kt = record.tangential_stiffness;
-    sidata.gammat = record.tangential_damping;
+    sidata.kt = record.stiffness.tangential_stiffness;
+    sidata.gammat = record.stiffness.tangential_damping;
     sidata.Fn = normal_force;  // what stock sliding and rolling models take their limits from
     add_force(normal_force * en, sidata, i, j);
 

@@ -13,17 +13,17 @@ namespace pyjkr {
 struct ContactRecord {
   PairProperties pair;
   NormalState normal;
-  double tangential_stiffness = 0.0;
-  double tangential_damping = 0.0;
-  double pull_off_force_original = 0.0;
-  double time_in_contact = 0.0;    // of this step [s]: the time step, less in the step a contact is made
-  bool update_history = false;
-  Vec3 normal_i_to_j{};
-  Vec3 relative_spin{};            // omega_i - omega_j; wall: omega_i
-  Vec3 slip_velocity{};            // u_i - u_j at the contact
-  double size_asymmetry = 0.0;     // (r_j - r_i)/(r_j + r_i); wall: 1
-  double reduced_inertia = 0.0;    // 1/I_r = 1/I_i + 1/I_j
-  Turn turn{};
+  ContactStiffness stiffness;
+  double time_in_contact;    // of this step [s]: the time step, less in the step a contact is made
+  bool update_history;
+  // filled only where a jkr or krijt slot needs them
+  double pull_off_force_original;
+  Vec3 normal_i_to_j;
+  Vec3 relative_spin;        // omega_i - omega_j; wall: omega_i
+  Vec3 slip_velocity;        // u_i - u_j at the contact
+  double size_asymmetry;     // (r_j - r_i)/(r_j + r_i); wall: 1
+  double reduced_inertia;    // 1/I_r = 1/I_i + 1/I_j
+  Turn turn;
 };
 
 }  // namespace pyjkr

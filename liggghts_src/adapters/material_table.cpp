@@ -48,6 +48,12 @@ LAMMPS_NS::FixPropertyGlobal* MaterialTable::find(const char* name, Kind kind) c
 LAMMPS_NS::FixPropertyGlobal* MaterialTable::require(const char* name, Kind kind, const char* meaning) const {
   LAMMPS_NS::FixPropertyGlobal* fix = find(name, kind);
   if (!fix) {
+    for (const char* other : {"scalar", "vector", "peratomtype", "matrix", "peratomtypepair"}) {
+      const int rows = other[0] == 's' ? 0 : 1;
+      const int columns = other[0] == 'm' || std::string(other) == "peratomtypepair" ? 1 : 0;
+      if (modify->find_fix_property(name, "property/global", other, rows, columns, caller_.c_str(), false))
+        refuse(std::string("property ") + name + " (" + meaning + ") is given as " + other + "; it must be " + kind_name(kind));
+    }
     const std::string values = kind == Kind::per_pair ? number(atom->ntypes) + " <one value for each pair of atom types>"
                                                 : std::string("<one value for each atom type>");
     refuse(std::string("property ") + name + " (" + meaning + ") is missing for " + pair_name(1, types()) +
@@ -129,7 +135,7 @@ void MaterialTable::read(PropertyRegistry& registry, const std::string& caller, 
       if (modulus_original)
         original = pressure_to_force * mixed_modulus(modulus_original->compute_vector(i - 1), poisson->compute_vector(i - 1),
                                                      modulus_original->compute_vector(j - 1), poisson->compute_vector(j - 1));
-      set_length_scales(pair, original);
+      set_constants(pair, original);
     }
   }
 }

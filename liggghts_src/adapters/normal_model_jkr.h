@@ -41,32 +41,35 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
   }
 
   // Force on i along e (from j to i) of a contact that exists at the end of this step. Fills the record.
-  double touch(SurfacesIntersectData& sidata, double previous_overlap, ContactRecord& record) const {
+  // `previous` gives the overlap one step ago; asked for only where the contact may be new.
+  template <class PreviousOverlap>
+  double touch(SurfacesIntersectData& sidata, const PreviousOverlap& previous, ContactRecord& record) const {
     double* const history = sidata.contact_history;
     const PairProperties& pair = record.pair;
     const double dt = update->dt;
     record.normal = normal_state(sidata.deltan, pair);
-    record.tangential_stiffness = Law::tangential_stiffness(sidata.deltan, record.normal, pair);
-    record.tangential_damping = tangential_damping_ ? tangential_damping(record.tangential_stiffness, pair) : 0.0;
+    record.stiffness = Law::stiffness(sidata.deltan, record.normal, pair);
+    if (!tangential_damping_) record.stiffness.tangential_damping = 0.0;
     record.time_in_contact = dt;
 
-    const double damping = Law::damping(sidata.deltan, record.normal, pair);
     // At setup and for compute pair/gran/local LIGGGHTS hands over full-step velocities: nothing to correct.
-    if (!record.update_history || !event_correction_) {
-      if (record.update_history && contact_slot_ >= 0) history[contact_slot_] = 1.0;
-      return record.normal.elastic_force - damping * sidata.vn;
-    }
-    const bool made_now = previous_overlap <= 0.0 && !has_contact(history);
+    if (!record.update_history) return record.normal.elastic_force - record.stiffness.damping * sidata.vn;
+    const bool known = has_contact(history);
     if (contact_slot_ >= 0) history[contact_slot_] = 1.0;
+    if (!event_correction_) return record.normal.elastic_force - record.stiffness.damping * sidata.vn;
+
+    // a contact that was there a step ago carries a speed; one that LIGGGHTS has only seen at setup is told by its path
+    const bool maybe_new = !known && sidata.vn < 0.0 && history[speed_slot_] == 0.0;
+    const double before = maybe_new ? previous(sidata) : 1.0;
     double force;
-    if (made_now) {
-      const NormalStep step{sidata.deltan, previous_overlap, sidata.vn, dt};
+    if (maybe_new && before <= 0.0) {
+      const NormalStep step{sidata.deltan, before, sidata.vn, dt};
       const double theta = fraction_after_make(step);
       record.time_in_contact = theta * dt;
       force = force_of_make<Law>(step, theta, record.normal, pair);
     } else {
       const double carried = history[speed_slot_] != 0.0 ? history[speed_slot_] : sidata.vn;
-      force = damped_force(record.normal.elastic_force, damping, sidata.vn, carried, dt, pair.effective_mass);
+      force = damped_force(record.normal.elastic_force, record.stiffness.damping, sidata.vn, carried, dt, pair.effective_mass);
     }
     history[speed_slot_] = sidata.vn + dt * force / pair.effective_mass;
     return force;

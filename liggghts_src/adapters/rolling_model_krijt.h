@@ -75,11 +75,11 @@ class RollingModelKrijt {
     if (record.update_history) angle += record.time_in_contact * spin;
     const double a = record.normal.contact_radius;
     const PairMaterial& material = *record.pair.material;
-    const double original = a * material.equilibrium_scale_original / material.equilibrium_scale;
+    const double original = a * material.original_contact_radius_ratio;
     const double limit = twisting_limit(original, sliding_limit(record.normal.elastic_force, record.pull_off_force_original,
                                                                 material.friction_coefficient));
-    const TwistingStep step = twist(angle, spin, 0.5 * record.tangential_stiffness * a * a,
-                                    0.5 * record.tangential_damping * a * a, limit);
+    const TwistingStep step = twist(angle, spin, 0.5 * record.stiffness.tangential_stiffness * a * a,
+                                    0.5 * record.stiffness.tangential_damping * a * a, limit);
     if (record.update_history) history[angle_slot_] = step.angle;
     return step.moment * record.normal_i_to_j;
   }

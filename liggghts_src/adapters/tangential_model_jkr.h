@@ -30,8 +30,8 @@ class TangentialModelJkr {
       displacement = turned(displacement, record.turn) + record.time_in_contact * record.slip_velocity;
     const double limit = sliding_limit(record.normal.elastic_force, record.pull_off_force_original,
                                        record.pair.material->friction_coefficient);
-    const SlidingStep step = slide(displacement, record.slip_velocity, record.tangential_stiffness,
-                                   record.tangential_damping, limit);
+    const SlidingStep step = slide(displacement, record.slip_velocity, record.stiffness.tangential_stiffness,
+                                   record.stiffness.tangential_damping, limit);
     if (record.update_history) store(step.displacement, history + slot_);
     return step.force;
   }

@@ -75,7 +75,7 @@ inline double fraction_before_break(const NormalStep& step, double breaking_over
 // dF/d(delta) at delta = 0 [N/m]: u = 1 there.
 inline double slope_at_zero_overlap(const PairProperties& pair) {
   if (pair.material->surface_energy == 0.0) return 0.0;
-  const double a1 = pair.material->zero_overlap_scale * pair.radius_power;
+  const double a1 = contact_radius_at_zero_overlap(pair);
   const double ratio = pair.effective_radius / a1;
   return 8.0 / 3.0 * kPi * pair.material->surface_energy * ratio * ratio;
 }
@@ -89,10 +89,10 @@ inline double force_of_make(const NormalStep& step, double theta, const NormalSt
   const double weight = 0.5 + theta;
   double damping;
   if (Law::has_neck) {
-    damping = weight * Law::damping(step.overlap, state, pair);
+    damping = weight * Law::stiffness(step.overlap, state, pair).damping;
   } else {
     // eta goes as delta^(1/4) and so as t^(1/4): its value after a whole step in contact, times the weight of p = 1/4
-    damping = Law::damping(closed, state, pair) * quarter_power_weight(theta);
+    damping = Law::stiffness(closed, state, pair).damping * quarter_power_weight(theta);
   }
   double elastic = weight * state.elastic_force;
   // the part of the force that grows as t: weight -zeta(-1, 1 + theta) = (theta^2 + theta + 1/6)/2 in place of the above
@@ -119,16 +119,16 @@ inline double force_of_break(const NormalStep& step, const PairProperties& pair)
   const double speed = step.separation_speed;
   double left_over = (theta - 0.5) * force;  // p = 0
   if (!Law::has_neck) {
-    const double whole_step = Law::damping(separated, NormalState{}, pair);
+    const double whole_step = Law::stiffness(separated, NormalState{}, pair).damping;
     left_over -= (quarter_power_weight(theta) - std::sqrt(std::sqrt(theta))) * whole_step * speed;
     left_over += 0.5 * slope_at_zero_overlap(pair) * separated * (theta * theta - theta + 1.0 / 6.0);  // p = 1
   } else if (pair.material->surface_energy > 0.0) {
     // next to the snap u - u_c = t / (sqrt(6) u_c) with t^2 = (delta + delta_C) R / a_1^2: a square root in time
-    const double a1 = pair.material->zero_overlap_scale * pair.radius_power;
+    const double a1 = contact_radius_at_zero_overlap(pair);
     const double root_step = std::sqrt(separated * pair.effective_radius) / (a1 * 2.44948974278317809820 * kRuptureRoot);
     const double force_slope = -16.0 * kPi * pair.material->surface_energy * pair.effective_radius * kRuptureRoot * kRuptureRoot;
     const NormalState snap{a1 * kRuptureRoot * kRuptureRoot, kRuptureRoot, force};
-    const double damping = Law::damping(end, snap, pair);
+    const double damping = Law::stiffness(end, snap, pair).damping;
     const double square_root_part = square_root_weight(theta) - std::sqrt(theta);
     left_over += square_root_part * root_step * force_slope;
     left_over -= ((theta - 0.5) + square_root_part * root_step / kRuptureRoot) * damping * speed;

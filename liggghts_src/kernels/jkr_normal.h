@@ -48,24 +48,28 @@ inline double contact_radius_root(double reduced_overlap) {
 // Overlap at which a stretched neck snaps under prescribed separation [m], negative. Chen 2019 eq. 6:
 // -delta_C = -a_0^2 / (2 6^(1/3) R).
 inline double rupture_overlap(const PairProperties& pair) {
-  const double a1 = pair.material->zero_overlap_scale * pair.radius_power;
+  const double a1 = contact_radius_at_zero_overlap(pair);
   return kRuptureOverlap * a1 * a1 / pair.effective_radius;
 }
+
+// Above this reduced overlap adhesion changes the force by D^(-3/4) = 1e-18 of itself: Hertz to round-off.
+constexpr double kNoAdhesionLeft = 1e24;
 
 // Contact radius and elastic force at an overlap, valid from the rupture overlap upwards.
 inline NormalState normal_state(double overlap, const PairProperties& pair) {
   const PairMaterial& material = *pair.material;
   const double radius = pair.effective_radius;
-  if (material.surface_energy == 0.0) {
+  const double reduced_overlap = overlap * reduced_overlap_per_overlap(pair);
+  // without surface energy the reduced overlap is infinite, or not a number at zero overlap
+  if (!(reduced_overlap <= kNoAdhesionLeft)) {
     const double a = std::sqrt(radius * overlap);
     return {a, 0.0, 4.0 / 3.0 * material.effective_modulus * a * overlap};
   }
-  const double a1 = material.zero_overlap_scale * pair.radius_power;
-  const double u = contact_radius_root(overlap * radius / (a1 * a1));
+  const double u = contact_radius_root(reduced_overlap);
   const double cube = u * u * u;
   // eqs 8 and 9 together: F = 4 E a^3/(3 R) - 4 sqrt(pi gamma E a^3)
   const double force = 8.0 * kPi * material.surface_energy * radius * cube * (2.0 / 3.0 * cube - 1.0);
-  return {a1 * u * u, u, force};
+  return {contact_radius_at_zero_overlap(pair) * u * u, u, force};
 }
 
 // (a/a_0)^(3/2) of the normal law; a_0^3 = (9/4) a_1^3.

@@ -1,6 +1,6 @@
 // Sliding: spring and dashpot along the contact plane, cut off where an adhesive contact begins to slip.
 // Haervig 2017 eqs 14, 16, 17 (Thornton 1991); Chen 2019 eqs 1b, 3a, and 12 for the original pull-off force.
-// Coulomb limit mu |F_N + 2 F_C| on spring and dashpot together, F_N without damping.
+// Coulomb limit mu |F_N + 2 F_C| on the spring, and on spring and dashpot together; F_N without damping.
 // SPDX-License-Identifier: GPL-2.0-or-later
 
 #ifndef PYJKR_KERNELS_JKR_TANGENTIAL_H
@@ -21,17 +21,21 @@ struct SlidingStep {
   Vec3 force;          // on partner i [N]
 };
 
-// One step: `displacement` already carries this step's slip. Where the limit is passed, the displacement is reset so
-// that spring and dashpot together give the limit: the contact slips, it does not wind up.
+// One step: `displacement` already carries this step's slip.
+//
+// The spring yields at the limit, and spring and dashpot together are cut at it. Resetting the spring to what is left
+// of the limit beside the dashpot, as some codes do, would stretch it against the motion whenever the dashpot alone
+// passes the limit, and make energy; with a spring that holds no more than the limit, (spring + dashpot, cut) - spring
+// never does work on the motion.
 inline SlidingStep slide(const Vec3& displacement, const Vec3& slip_velocity, double stiffness, double damping,
                          double limit) {
-  const Vec3 dashpot = -damping * slip_velocity;
-  const Vec3 trial = dashpot - stiffness * displacement;
-  const double magnitude = norm(trial);
-  if (magnitude <= limit) return {displacement, trial};
-  const Vec3 force = (limit / magnitude) * trial;
-  if (!(stiffness > 0.0)) return {{0.0, 0.0, 0.0}, force};
-  return {(1.0 / stiffness) * (dashpot - force), force};
+  SlidingStep step{displacement, {0.0, 0.0, 0.0}};
+  const double spring_square = stiffness * stiffness * dot(displacement, displacement);
+  if (spring_square > limit * limit) step.displacement = (limit / std::sqrt(spring_square)) * displacement;
+  step.force = -stiffness * step.displacement - damping * slip_velocity;
+  const double square = dot(step.force, step.force);
+  if (square > limit * limit) step.force = (limit / std::sqrt(square)) * step.force;
+  return step;
 }
 
 }  // namespace pyjkr

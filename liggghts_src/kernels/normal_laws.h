@@ -10,8 +10,18 @@
 
 namespace pyjkr {
 
-constexpr double kTwiceRootFiveSixths = 1.82574185835055371152;
-constexpr double kRootFive = 2.23606797749978969641;
+// Both laws damp and resist sliding through one length l: eta_N ~ sqrt(l m), k_T = 8 G l, eta_T ~ sqrt(k_T m).
+struct ContactStiffness {
+  double tangential_stiffness;   // k_T [N/m]
+  double damping;                // eta_N [kg/s]
+  double tangential_damping;     // eta_T = 2 sqrt(5/6) |beta| sqrt(k_T m) [kg/s], Haervig 2017 eq. 16
+};
+
+inline ContactStiffness stiffness_of_length(double length, double normal_damping_scale, const PairProperties& pair) {
+  const double root = std::sqrt(length * pair.effective_mass);
+  return {8.0 * pair.material->effective_shear_modulus * length, normal_damping_scale * root,
+          pair.material->tangential_damping_scale * root};
+}
 
 struct SimplifiedJkr {
   static constexpr bool has_neck = false;
@@ -19,16 +29,10 @@ struct SimplifiedJkr {
   static double breaking_overlap(const PairProperties&) { return 0.0; }
   static double breaking_force(const PairProperties& pair) { return force_at_zero_overlap(pair); }
 
-  // eta_N = 2 sqrt(5/6) |beta| sqrt(S_n m), S_n = 2 E sqrt(R delta) [kg/s]
-  static double damping(double overlap, const NormalState&, const PairProperties& pair) {
-    const PairMaterial& material = *pair.material;
-    const double stiffness = 2.0 * material.effective_modulus * std::sqrt(pair.effective_radius * overlap);
-    return kTwiceRootFiveSixths * material.damping_ratio * std::sqrt(stiffness * pair.effective_mass);
-  }
-
-  // k_T = 8 G sqrt(R delta) [N/m]
-  static double tangential_stiffness(double overlap, const NormalState&, const PairProperties& pair) {
-    return 8.0 * pair.material->effective_shear_modulus * std::sqrt(pair.effective_radius * overlap);
+  // l = sqrt(R delta): eta_N = 2 sqrt(5/6) |beta| sqrt(S_n m) with S_n = 2 E l; k_T = 8 G l
+  static ContactStiffness stiffness(double overlap, const NormalState&, const PairProperties& pair) {
+    return stiffness_of_length(std::sqrt(pair.effective_radius * overlap),
+                               pair.material->normal_damping_scale_simplified, pair);
   }
 };
 
@@ -38,24 +42,11 @@ struct FullJkr {
   static double breaking_overlap(const PairProperties& pair) { return rupture_overlap(pair); }
   static double breaking_force(const PairProperties& pair) { return force_at_rupture(pair); }
 
-  // eta_N = sqrt(5) |beta| sqrt(m (4/3) E a) [kg/s], in the neck too
-  static double damping(double, const NormalState& state, const PairProperties& pair) {
-    const PairMaterial& material = *pair.material;
-    const double stiffness = 4.0 / 3.0 * material.effective_modulus * state.contact_radius;
-    return kRootFive * material.damping_ratio * std::sqrt(stiffness * pair.effective_mass);
-  }
-
-  // k_T = 8 G a [N/m]
-  static double tangential_stiffness(double, const NormalState& state, const PairProperties& pair) {
-    return 8.0 * pair.material->effective_shear_modulus * state.contact_radius;
+  // l = a, in the neck too: eta_N = sqrt(5) |beta| sqrt(m (4/3) E a); k_T = 8 G a
+  static ContactStiffness stiffness(double, const NormalState& state, const PairProperties& pair) {
+    return stiffness_of_length(state.contact_radius, pair.material->normal_damping_scale_full, pair);
   }
 };
-
-// eta_T = 2 sqrt(5/6) |beta| sqrt(k_T m) [kg/s], Haervig 2017 eq. 16.
-inline double tangential_damping(double tangential_stiffness, const PairProperties& pair) {
-  return kTwiceRootFiveSixths * pair.material->damping_ratio *
-         std::sqrt(tangential_stiffness * pair.effective_mass);
-}
 
 }  // namespace pyjkr
 

@@ -22,30 +22,53 @@ struct PairMaterial {
   double friction_coefficient = 0.0;      // mu
   double adhesion_hysteresis = -1.0;      // Delta gamma / gamma, negative: not given
   double critical_rolling_angle = -1.0;   // theta_crit [rad], negative: not given
-  // The two length scales go with cbrt(R^2); what is left of them is a constant of the material.
-  double zero_overlap_scale = 0.0;        // cbrt(4 pi gamma / E): a_1 = scale * cbrt(R^2)
-  double equilibrium_scale = 0.0;         // cbrt(9 pi gamma / E): a_0 = scale * cbrt(R^2), eq. 7
-  double equilibrium_scale_original = 0.0;
+  // What can be said of a contact before its radii, overlap and masses are known: see set_constants().
+  double zero_overlap_scale = 0.0;             // cbrt(4 pi gamma / E): a_1 = scale R^(2/3)
+  double inverse_zero_overlap_scale_sq = 0.0;  // its inverse square; infinite without adhesion
+  double equilibrium_scale_original = 0.0;     // cbrt(9 pi gamma / E) of the real material: a_0 = scale R^(2/3), eq. 7
+  double original_contact_radius_ratio = 1.0;  // a_0 of the real material over a_0 of the normal law
+  double normal_damping_scale_simplified = 0.0;  // 2 sqrt(5/6) |beta| sqrt(2 E)
+  double normal_damping_scale_full = 0.0;        // sqrt(5) |beta| sqrt(4 E / 3)
+  double tangential_damping_scale = 0.0;         // 2 sqrt(5/6) |beta| sqrt(8 G)
 };
 
-inline void set_length_scales(PairMaterial& material, double effective_modulus_original) {
-  material.zero_overlap_scale = std::cbrt(4.0 * kPi * material.surface_energy / material.effective_modulus);
-  material.equilibrium_scale = std::cbrt(9.0 * kPi * material.surface_energy / material.effective_modulus);
+constexpr double kTwiceRootFiveSixths = 1.82574185835055371152;
+constexpr double kRootFive = 2.23606797749978969641;
+
+inline void set_constants(PairMaterial& material, double effective_modulus_original) {
+  const double modulus = material.effective_modulus, energy = material.surface_energy;
+  material.zero_overlap_scale = std::cbrt(4.0 * kPi * energy / modulus);
+  material.inverse_zero_overlap_scale_sq = 1.0 / (material.zero_overlap_scale * material.zero_overlap_scale);
   material.equilibrium_scale_original =
       std::cbrt(9.0 * kPi * material.surface_energy_original / effective_modulus_original);
+  material.original_contact_radius_ratio =
+      energy > 0.0 ? material.equilibrium_scale_original / std::cbrt(9.0 * kPi * energy / modulus) : 1.0;
+  const double tsuji = kTwiceRootFiveSixths * material.damping_ratio;
+  material.normal_damping_scale_simplified = tsuji * std::sqrt(2.0 * modulus);
+  material.normal_damping_scale_full = kRootFive * material.damping_ratio * std::sqrt(4.0 / 3.0 * modulus);
+  material.tangential_damping_scale = tsuji * std::sqrt(8.0 * material.effective_shear_modulus);
 }
 
 // Geometry and inertia of one contact.
 struct PairProperties {
-  const PairMaterial* material = nullptr;
-  double effective_radius = 0.0;   // R [m]
-  double radius_power = 0.0;       // cbrt(R^2)
-  double effective_mass = 0.0;     // m [kg]
+  const PairMaterial* material;
+  double effective_radius;       // R [m]
+  double inverse_radius_root;    // R^(-1/3)
+  double effective_mass;         // m [kg]
 };
 
 inline PairProperties pair_properties(const PairMaterial& material, double effective_radius, double effective_mass) {
-  const double root = std::cbrt(effective_radius);
-  return {&material, effective_radius, root * root, effective_mass};
+  return {&material, effective_radius, 1.0 / std::cbrt(effective_radius), effective_mass};
+}
+
+// a_1 = (4 pi gamma R^2/E)^(1/3) [m], the contact radius at zero overlap.
+inline double contact_radius_at_zero_overlap(const PairProperties& pair) {
+  return pair.material->zero_overlap_scale * pair.effective_radius * pair.inverse_radius_root;
+}
+
+// delta R/a_1^2 per overlap [1/m]: R a_1^-2 = scale^-2 R^(-1/3), no division a contact.
+inline double reduced_overlap_per_overlap(const PairProperties& pair) {
+  return pair.material->inverse_zero_overlap_scale_sq * pair.inverse_radius_root;
 }
 
 // F_C = 3 pi R gamma [N], positive; of the normal law and of the real surfaces.
@@ -56,12 +79,9 @@ inline double pull_off_force_original(const PairProperties& pair) {
   return 3.0 * kPi * pair.effective_radius * pair.material->surface_energy_original;
 }
 
-// a_0 [m], Haervig 2017 eq. 7.
-inline double equilibrium_contact_radius(const PairProperties& pair) {
-  return pair.material->equilibrium_scale * pair.radius_power;
-}
+// a_0 [m] of the real surfaces, Haervig 2017 eq. 7.
 inline double equilibrium_contact_radius_original(const PairProperties& pair) {
-  return pair.material->equilibrium_scale_original * pair.radius_power;
+  return pair.material->equilibrium_scale_original * pair.effective_radius * pair.inverse_radius_root;
 }
 
 }  // namespace pyjkr

@@ -19,14 +19,11 @@ inline double twisting_limit(double contact_radius, double sliding_limit) {
   return 2.0 / 3.0 * contact_radius * sliding_limit;
 }
 
-// One step: `angle` already carries this step's twist. Past the limit the angle is reset as in slide().
+// One step: `angle` already carries this step's twist. Spring and sum are cut at the limit as in slide().
 inline TwistingStep twist(double angle, double relative_spin, double stiffness, double damping, double limit) {
-  const double dashpot = -damping * relative_spin;
-  const double trial = dashpot - stiffness * angle;
-  if (std::fabs(trial) <= limit) return {angle, trial};
-  const double moment = std::copysign(limit, trial);
-  if (!(stiffness > 0.0)) return {0.0, moment};
-  return {(dashpot - moment) / stiffness, moment};
+  const double kept = stiffness * std::fabs(angle) > limit ? std::copysign(limit / stiffness, angle) : angle;
+  const double moment = -stiffness * kept - damping * relative_spin;
+  return {kept, std::fabs(moment) > limit ? std::copysign(limit, moment) : moment};
 }
 
 }  // namespace pyjkr
