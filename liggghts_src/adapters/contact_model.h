@@ -108,7 +108,7 @@ class ContactModel : public lcm::ContactModelBase {
     const bool update_history = sidata.computeflag && sidata.shearupdate;
     if (Law::has_neck) {
       if (!normal_.has_contact(history)) return release(sidata);
-    } else if (!update_history || !normal_.event_correction() || !was_touching(sidata)) {
+    } else if (!update_history || !normal_.carries_contact(history) || !was_touching(sidata)) {
       return release(sidata);
     }
     complete_geometry(sidata);

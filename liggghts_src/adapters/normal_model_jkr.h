@@ -34,6 +34,10 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
   // A neck is alive in this contact's history.
   bool has_contact(const double* history) const { return contact_slot_ >= 0 && history && history[contact_slot_] != 0.0; }
 
+  // This contact was there a step ago, and is corrected for where it ends. Of two triangles that meet under a sphere
+  // only one carries its contact.
+  bool carries_contact(const double* history) const { return speed_slot_ >= 0 && history[speed_slot_] != 0.0; }
+
   void forget(double* history) const {
     if (!history) return;
     if (contact_slot_ >= 0) history[contact_slot_] = 0.0;
