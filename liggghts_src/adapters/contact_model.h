@@ -107,7 +107,8 @@ class ContactModel : public lcm::ContactModelBase {
     double* const history = sidata.contact_history;
     const bool update_history = sidata.computeflag && sidata.shearupdate;
     if (Law::has_neck) {
-      if (!normal_.has_contact(history)) return release(sidata);
+      // a contact that only the set-up has seen, which writes no history, is told by its path
+      if (!normal_.has_contact(history) && !(update_history && was_touching(sidata))) return release(sidata);
     } else if (!update_history || !normal_.carries_contact(history) || !was_touching(sidata)) {
       return release(sidata);
     }
