@@ -5,8 +5,8 @@ Finished cases are not run again: `run.json` beside the deck tells whether the r
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
+from typing import Protocol
 
 from pyjkr import compare, deck, dump
 from pyjkr.case import Case, Plan
@@ -14,11 +14,18 @@ from pyjkr.compare import Outcome
 from pyjkr.errors import RunError
 from pyjkr.run import Run, Simulator, read_run, run_deck
 
-# Reports a case that is done and whether it was there already.
-Report = Callable[[Case, bool], None]
+
+class Watcher(Protocol):
+    """Who wants to know how far the cases have come."""
+
+    def step(self, case: Case, step: int) -> None:
+        """The running case has come to a step."""
+
+    def done(self, case: Case, was_there: bool) -> None:
+        """A case has ended, or was there already."""
 
 
-def execute(plan: Plan, directory: Path, simulator: Simulator, *, ranks: int = 1, report: Report) -> dict[str, Outcome]:
+def execute(plan: Plan, directory: Path, simulator: Simulator, *, ranks: int = 1, watcher: Watcher) -> dict[str, Outcome]:
     """Run every case that is not finished, and read all of them.
 
     Parameters
@@ -31,8 +38,8 @@ def execute(plan: Plan, directory: Path, simulator: Simulator, *, ranks: int = 1
         LIGGGHTS to use.
     ranks : int
         MPI processes.
-    report : callable
-        Called with each case once it is done.
+    watcher : Watcher
+        Told of every step that LIGGGHTS prints and of every case that is done.
 
     Raises
     ------
@@ -42,9 +49,9 @@ def execute(plan: Plan, directory: Path, simulator: Simulator, *, ranks: int = 1
     outcomes = {}
     for case in plan.cases:
         finished = _finished(plan, case, directory, ranks)
-        run = finished or _run(plan, case, directory, simulator, ranks)
+        run = finished or _run(plan, case, directory, simulator, ranks, watcher)
         outcomes[case.label] = _read(case, run)
-        report(case, finished is not None)
+        watcher.done(case, finished is not None)
     return outcomes
 
 
@@ -78,10 +85,12 @@ def _finished(plan: Plan, case: Case, directory: Path, ranks: int | None) -> Run
     return run
 
 
-def _run(plan: Plan, case: Case, directory: Path, simulator: Simulator, ranks: int) -> Run:
+def _run(plan: Plan, case: Case, directory: Path, simulator: Simulator, ranks: int, watcher: Watcher) -> Run:
     path = deck.write(case, plan.scene, directory / case.label)
     (path.parent / deck.DUMP_NAME).unlink(missing_ok=True)
-    return run_deck(path, ranks=ranks, total_steps=case.steps, progress=False, simulator=simulator)
+    return run_deck(
+        path, ranks=ranks, progress=False, on_step=lambda step: watcher.step(case, step), simulator=simulator
+    )
 
 
 def _read(case: Case, run: Run) -> Outcome:

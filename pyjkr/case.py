@@ -37,7 +37,7 @@ class Case:
     radii, densities, masses : tuple of float
         Per sphere [m], [kg/m3], [kg].
     periods : dict
-        Collision time and period of every active mode by name [s].
+        Collision time, period of the stuck oscillation and shortest period of every active mode by name [s].
     collision_time, time_step : float
         Shorter of Hertz collision and stuck period [s]; the step [s].
     start_gap : float
@@ -48,8 +48,8 @@ class Case:
         Neighbour skin [m].
     stiffness_commands : tuple of str
         `hard_particles`, `soft_particles`, both or none.
-    maximum_overlap, rupture_overlap : float
-        Upper bound of the overlap [m]; overlap at which the contact ends [m].
+    maximum_contact_radius, maximum_overlap, rupture_overlap : float
+        Upper bounds of the contact radius and of the overlap [m]; overlap at which the contact ends [m].
     """
 
     label: str
@@ -78,6 +78,7 @@ class Case:
     coarse_interval: int
     skin: float
     stiffness_commands: tuple[str, ...]
+    maximum_contact_radius: float
     maximum_overlap: float
     rupture_overlap: float
 

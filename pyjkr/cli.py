@@ -53,6 +53,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_deck(verbs)
     _add_run(verbs)
     _add_compare(verbs)
+    _add_cost(verbs)
     return parser
 
 
@@ -119,6 +120,20 @@ def _add_compare(verbs) -> None:
         "pyjkr compare results/dahneke",
     )  # fmt: skip
     parser.add_argument("directory", type=Path, metavar="DIR")
+
+
+def _add_cost(verbs) -> None:
+    parser = _add(
+        verbs, "cost", _cost, "Measure what accuracy costs in time: steps, event correction, stiffness, effects.",
+        "Reads the scene; runs LIGGGHTS many times and writes DIR/cost.csv, cost.json, PNG figures, the runs in DIR/runs/,\n"
+        "and tables to stdout. Finished runs are not repeated. Exit status 1 where a promised accuracy is missed.",
+        "pyjkr cost dahneke --quick -o results/dahneke-cost",
+    )  # fmt: skip
+    parser.add_argument("scene", metavar="SCENE")
+    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="default: results/<name of the scene>-cost")
+    parser.add_argument("--quick", action="store_true", help="fewer phases, steps, speeds and repetitions")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="write a Markdown page too, figures in figures/ beside it")
+    parser.add_argument("--no-progress", action="store_true", help="no progress bar; it is shown on a terminal only")
 
 
 def _ranks(text: str) -> int:
@@ -201,9 +216,9 @@ def _run(options: argparse.Namespace) -> None:
         shutil.copyfile(path, directory / SCENE_COPY)
     outcomes = None
     if simulator:
-        with progress.bar(made, not options.no_progress) as done:
-            outcomes = campaign.execute(made, directory, simulator, ranks=options.np, report=done)
-    _finish(compare(made, oracle_outcomes(made), outcomes), directory, str(simulator.executable) if simulator else None)
+        with progress.of_plan(made, not options.no_progress) as cases:
+            outcomes = campaign.execute(made, directory, simulator, ranks=options.np, watcher=cases)
+    _finish(compare(made, oracle_outcomes(made), outcomes), directory)
 
 
 def _compare(options: argparse.Namespace) -> None:
@@ -216,17 +231,31 @@ def _compare(options: argparse.Namespace) -> None:
     _, made = _load(str(copy))
     outcomes = campaign.collect(made, options.directory)
     report.clear(options.directory)
-    _finish(compare(made, oracle_outcomes(made), outcomes), options.directory, None)
+    _finish(compare(made, oracle_outcomes(made), outcomes), options.directory)
 
 
-def _finish(comparison, directory: Path, simulator: str | None) -> None:
+def _finish(comparison, directory: Path) -> None:
     from pyjkr import report, tables
 
     digest = hashlib.sha256((directory / SCENE_COPY).read_bytes()).hexdigest()
-    report.write(comparison, directory, digest, simulator)
+    report.write(comparison, directory, digest)
     print(tables.comparison_text(comparison))
     print(f"pyjkr: wrote {directory / report.RESULT_NAME}", file=sys.stderr)
     if not comparison.passed:
+        raise ToleranceError("outside tolerance; see the lines marked BAD")
+
+
+def _cost(options: argparse.Namespace) -> None:
+    from pyjkr.cost import command, report, tables
+
+    path, made = _load(options.scene)
+    directory = options.output or Path("results") / f"{command.scene_name(path)}-cost"
+    costs = command.run(
+        made.scene, path, directory, quick=options.quick, progress=not options.no_progress, page_file=options.page
+    )
+    print(tables.text(costs))
+    print(f"pyjkr: wrote {directory / report.RESULT_NAME}", file=sys.stderr)
+    if not costs.passed:
         raise ToleranceError("outside tolerance; see the lines marked BAD")
 
 

@@ -55,6 +55,8 @@ class Outcome:
         Time steps; 0 for the oracle.
     wall_time, computing_time : float
         Of the whole program, and of its time loop without the writing of output [s]; NaN for the oracle.
+    simulator : str or None
+        What ran it; None for the oracle.
     """
 
     restitution: float
@@ -65,6 +67,7 @@ class Outcome:
     steps: int = 0
     wall_time: float = math.nan
     computing_time: float = math.nan
+    simulator: str | None = None
 
 
 @dataclass(frozen=True)
@@ -105,6 +108,11 @@ class Comparison:
     table: pd.DataFrame
     checks: tuple[Check, ...]
     outcomes: Mapping[str, Outcome]
+
+    @property
+    def simulators(self) -> tuple[str, ...]:
+        """What ran the cases, each once: more than one where an interrupted campaign went on with another."""
+        return tuple(dict.fromkeys(outcome.simulator for outcome in self.outcomes.values() if outcome.simulator))
 
     @property
     def passed(self) -> bool:
@@ -154,7 +162,8 @@ def outcome_of_run(case: Case, frame: pd.DataFrame, run: Run) -> Outcome:
         velocity=velocity,
         steps=run.steps,
         wall_time=run.wall_time,
-        computing_time=run.loop_time - _output_time(run),
+        computing_time=run.loop_time - output_time(run),
+        simulator=run.simulator,
     )
 
 
@@ -254,7 +263,7 @@ def _speed_up(table: pd.DataFrame, cost: str) -> pd.Series:
     return table["speed"].map(real) / table[cost]
 
 
-def _output_time(run: Run) -> float:
+def output_time(run: Run) -> float:
     """Time that LIGGGHTS spent on thermo lines and dumps [s], from its log: it samples the run and is no part of it."""
     return sum(float(seconds) for seconds in OUTPUT_TIME.findall(run.log.read_text(encoding="utf-8", errors="replace")))
 

@@ -9,12 +9,20 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
 from scipy.optimize import brentq
 
 # Overlap at rupture in units of a_0^2/R: 1/(2 6^(1/3)); Chen 2019, eq. 6.
 RUPTURE_OVERLAP_SCALE = 1 / (2 * 6 ** (1 / 3))
 # Contact radius at zero overlap in units of a_0: Haervig 2017, eq. 10 with zero overlap.
 CONTACT_RADIUS_AT_ZERO_OVERLAP = (2 / 3) ** (2 / 3)
+# Pull of a contact at zero overlap in units of F_C: Haervig 2017, eqs 8-10 with zero overlap. There jkr/simplified ends.
+FORCE_AT_ZERO_OVERLAP = 8 / 9
+# sqrt(a/a_0) at rupture: 4 v^3 = 2/3.
+ROOT_AT_RUPTURE = 6 ** (-1 / 3)
+# Newton's method in `contact_radius`: after three steps 6e-7 is left over all overlaps, after four round-off.
+NEWTON_STEPS = 5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,6 +132,53 @@ def overlap(pair: PairProperties, contact_radius: float) -> float:
     """Overlap at a contact radius [m]: delta = a^2/R - 2 sqrt(pi gamma a/E); Haervig 2017, eq. A.9."""
     neck = 2 * math.sqrt(math.pi * pair.surface_energy * contact_radius / pair.effective_modulus)
     return contact_radius**2 / pair.effective_radius - neck
+
+
+def contact_radius(overlap: npt.ArrayLike, pair: PairProperties) -> np.ndarray:
+    """Contact radius a [m] of a JKR contact at given overlaps: the stable root of Haervig 2017, eq. 10.
+
+    In v = sqrt(a/a_0) and x = overlap R/a_0^2 the equation is v^4 - (2/3) v = x, with a double root c = 6^(-1/3) at
+    rupture. For w = v - c it reads w sqrt(w^2 + 4 c w + 6 c^2) = sqrt(x + 3 c^4), whose left side rises and is convex:
+    Newton's method comes down to the root from any start above it. The area of contact is pi a^2.
+
+    Parameters
+    ----------
+    overlap : array_like
+        Overlap [m], positive in compression, negative in a neck.
+    pair : PairProperties
+        R, E and gamma of the normal law; arrays are accepted, one entry per contact.
+
+    Returns
+    -------
+    ndarray
+        a [m]; 0 where there is no contact: beyond rupture, or without overlap where gamma = 0 (Hertz: sqrt(R delta)).
+    """
+    overlap, radius, zero_load = np.broadcast_arrays(
+        np.asarray(overlap, dtype=float), pair.effective_radius, pair.equilibrium_contact_radius
+    )
+    adhesive = zero_load > 0
+    unit = np.where(adhesive, zero_load, 1.0)
+    reduced = overlap * radius / unit**2
+    c = ROOT_AT_RUPTURE
+    square = reduced + 3 * c**4
+    # Rupture itself is still contact, also where rounding the overlap moved it a little beyond.
+    holds = square >= -4 * np.finfo(float).eps
+    reach = np.sqrt(np.maximum(square, 0.0))
+    # Either term of the root alone gives an upper bound.
+    w = np.minimum(np.sqrt(reach), reach / (math.sqrt(6) * c))
+    for _ in range(NEWTON_STEPS):
+        root = np.sqrt(w * (w + 4 * c) + 6 * c**2)
+        w = w - (w * root - reach) * root / (2 * w * (w + 3 * c) + 6 * c**2)
+    hertz = np.sqrt(radius * np.maximum(overlap, 0.0))
+    return np.where(adhesive, np.where(holds, zero_load * (c + w) ** 2, 0.0), hertz)
+
+
+def holding_force(pair: PairProperties, normal_law: str) -> float:
+    """Strongest steady pull that the contact withstands [N]: F_C for `jkr`; (8/9) F_C for `jkr/simplified`.
+
+    The simplified contact ends at zero overlap, before the force reaches -F_C.
+    """
+    return pair.pull_off_force * (FORCE_AT_ZERO_OVERLAP if normal_law == "jkr/simplified" else 1.0)
 
 
 def maximum_overlap(pair: PairProperties, speed: float) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import jinja2
 
@@ -38,9 +39,25 @@ def render(case: Case, scene: Scene) -> str:
     scene : Scene
         Where it comes from.
     """
-    contact = scene.meeting
+    name = "impact_wall.in.j2" if scene.impact.target == "wall" else "impact_pair.in.j2"
+    return render_template(name, case, scene, box=box(case, scene))
+
+
+def render_template(name: str, case: Case, scene: Scene, *, box: tuple[float, ...], **more: Any) -> str:
+    """Text of a template of impacts.
+
+    Parameters
+    ----------
+    name : str
+        Of the template.
+    case, scene
+        As for `render`.
+    box : tuple of float
+        xlo xhi ylo yhi zlo zhi [m].
+    more
+        What the template asks for besides.
+    """
     names = list(dict.fromkeys((scene.impact.material, scene.impact.struck_material)))
-    box = _box(case, scene)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(resources.directory("templates")),
         undefined=jinja2.StrictUndefined,
@@ -51,11 +68,10 @@ def render(case: Case, scene: Scene) -> str:
     )
     environment.filters["plain"] = _plain
     environment.filters["pairs"] = lambda value: " ".join([str(len(names)), *[_number(value)] * len(names) ** 2])
-    template = environment.get_template("impact_wall.in.j2" if scene.impact.target == "wall" else "impact_pair.in.j2")
-    return template.render(
+    return environment.get_template(name).render(
         scene=scene,
         case=case,
-        contact=contact,
+        contact=scene.meeting,
         names=names,
         types=len(names),
         styles=contact_styles(scene),
@@ -63,6 +79,7 @@ def render(case: Case, scene: Scene) -> str:
         box=box,
         bin_size=_bin_size(case, box),
         thermo_interval=math.ceil(case.steps / THERMO_LINES),
+        **more,
     )
 
 
@@ -78,7 +95,7 @@ def write(case: Case, scene: Scene, directory: Path) -> Path:
     """
     directory.mkdir(parents=True, exist_ok=True)
     if scene.impact.target == "wall" and scene.impact.wall == "mesh":
-        (directory / MESH_NAME).write_text(_plate(_plate_half_width(case)), encoding="ascii")
+        (directory / MESH_NAME).write_text(plate(plate_half_width(case)), encoding="ascii")
     deck = directory / DECK_NAME
     deck.write_text(render(case, scene), encoding="utf-8")
     return deck
@@ -120,22 +137,31 @@ def _plain(text: str) -> str:
     return "".join(letter if letter.isprintable() else "?" for letter in text).replace("&", "+")
 
 
-def _plate_half_width(case: Case) -> float:
-    return max(PLATE_HALF_WIDTH, 2 * case.tangential_speed * case.duration)
+def plate_half_width(case: Case, span: float = 0.0) -> float:
+    """Half width of a mesh wall [m], under spheres that stand side by side over `span` along y."""
+    return max(PLATE_HALF_WIDTH, 2 * case.tangential_speed * case.duration, 4 * span)
 
 
-def _box(case: Case, scene: Scene) -> tuple[float, ...]:
-    """xlo xhi ylo yhi zlo zhi [m]: room for the whole flight at no more than the speed of approach."""
+def box(case: Case, scene: Scene, span: float = 0.0) -> tuple[float, ...]:
+    """xlo xhi ylo yhi zlo zhi [m]: room for the whole flight at no more than the speed of approach.
+
+    Parameters
+    ----------
+    case, scene
+        As for `render`.
+    span : float
+        Length along y over which spheres stand side by side [m].
+    """
     margin = MARGIN_IN_RADII * max(case.radii)
     flight = case.normal_speed * case.duration
     if scene.impact.target == "sphere":
         length = sum(case.radii) + flight + margin
-        return (-margin, margin, -margin, margin, -length, length)
+        return (-margin, margin, -margin, span + margin, -length, length)
     top = 2 * case.radii[0] + flight + margin
     if scene.impact.wall == "mesh":
-        half = _plate_half_width(case)
+        half = plate_half_width(case, span)
         return (-half - margin, half + margin, -0.5 * half - margin, 1.5 * half + margin, -case.radii[0], top)
-    return (-margin, margin + case.tangential_speed * case.duration, -margin, margin, -case.radii[0], top)
+    return (-margin, margin + case.tangential_speed * case.duration, -margin, span + margin, -case.radii[0], top)
 
 
 def _bin_size(case: Case, box: tuple[float, ...]) -> float:
@@ -144,8 +170,8 @@ def _bin_size(case: Case, box: tuple[float, ...]) -> float:
     return max(0.5 * (2 * max(case.radii) + case.skin), longest / BINS_PER_SIDE)
 
 
-def _plate(half_width: float) -> str:
-    """Two triangles in z = 0; the sphere's path along x at y = 0 does not cross their common edge y = x + half_width/2."""
+def plate(half_width: float) -> str:
+    """Two triangles in z = 0; paths along x from x = 0 at y < half_width/2 do not cross their common edge y = x + half_width/2."""
     h = half_width
     corners = [(-h, -0.5 * h), (h, -0.5 * h), (h, 1.5 * h), (-h, 1.5 * h)]
     lines = ["solid wall"]

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from pyjkr import contact as contact_laws
-from pyjkr import scaling, timestep
+from pyjkr import limits, scaling, timestep
 from pyjkr.case import Case, LeftOut, Plan, Rule
 from pyjkr.contact import PairProperties
 from pyjkr.errors import PlanError
@@ -27,8 +27,6 @@ DENSE_COLLISIONS = 3
 FRAMES_AFTERWARDS = 25
 # Particle Young's modulus [Pa] that LIGGGHTS 3.8 accepts without soft_particles or hard_particles.
 STOCK_MODULUS_RANGE = (5e6, 1e9)
-# A warning where the time step exceeds this fraction of the shortest period.
-RESOLVED_FRACTION = 1 / 10
 # Skin of the neighbour lists in radii of the smallest sphere, and in lengths of the longest neck.
 SKIN_IN_RADII = 0.2
 SKIN_IN_NECKS = 4
@@ -66,7 +64,7 @@ def plan(scene: Scene) -> Plan:
     Raises
     ------
     PlanError
-        Where no case is left, or a time step is too long for a mode of the contact.
+        Where no case is left, a time step is too long for a mode of the contact, or the environment pulls too hard.
     """
     drafts: list[_Draft] = []
     left_out: list[LeftOut] = []
@@ -94,7 +92,7 @@ def plan(scene: Scene) -> Plan:
         needed = (FLIGHT_STEPS + 1) * draft.time_step + COLLISIONS_PER_RUN * draft.slowest
         durations[draft.speed] = max(durations[draft.speed], needed)
     cases = tuple(_case(scene, draft, durations[draft.speed]) for draft in drafts)
-    return Plan(scene, cases, tuple(left_out), _warnings(scene, cases))
+    return Plan(scene, cases, tuple(left_out), limits.warnings(scene, cases))
 
 
 def pair_properties(scene: Scene, modulus_ratio: float, rule: Rule) -> PairProperties:
@@ -199,18 +197,24 @@ def _case(scene: Scene, draft: _Draft, duration: float) -> Case:
         coarse_interval=max(1, coarse_interval),
         skin=_skin(scene, min(radii), -neck),
         stiffness_commands=_stiffness_commands(moduli),
+        maximum_contact_radius=deepest,
         maximum_overlap=contact_laws.overlap(pair, deepest),
         rupture_overlap=neck,
     )
 
 
 def _periods(scene: Scene, pair: PairProperties, normal_speed: float, contact_radius: float) -> dict[str, float]:
-    """Hertz collision time and the periods of the modes that this model has [s]."""
-    periods = {"Hertz collision": _hertz(pair, normal_speed), "stuck oscillation": timestep.stuck_period(pair)}
+    """Hertz collision time, and the periods of the modes that this model has at the deepest point of the impact [s]."""
+    periods = {
+        "Hertz collision": _hertz(pair, normal_speed),
+        "stuck oscillation": timestep.stuck_period(pair),
+        "normal": timestep.normal_period(pair, contact_radius),
+    }
     if scene.model.tangential in ("history", "jkr"):
         periods["sliding"] = timestep.sliding_period(pair, contact_radius)
     if scene.model.rolling_friction == "krijt":
-        periods["rolling"] = timestep.rolling_period(pair, contact_radius)
+        radii, _, masses = _spheres(scene)
+        periods["rolling"] = timestep.rolling_period(pair, contact_radius, timestep.spin_share(radii, masses))
         if scene.model.twisting:
             periods["twisting"] = timestep.twisting_period(pair, contact_radius)
     return {name: period for name, period in periods.items() if math.isfinite(period)}
@@ -233,25 +237,3 @@ def _stiffness_commands(youngs_moduli: tuple[float, ...]) -> tuple[str, ...]:
     lowest, highest = STOCK_MODULUS_RANGE
     soft = ("soft_particles",) if min(youngs_moduli) < lowest else ()
     return soft + (("hard_particles",) if max(youngs_moduli) > highest else ())
-
-
-def _warnings(scene: Scene, cases: tuple[Case, ...]) -> tuple[str, ...]:
-    real = cases[0].original
-    warnings = [scaling.tabor_warning(real.effective_radius, real.effective_modulus, real.surface_energy)]
-    named: set[str] = set()
-    for case in cases:
-        mode, period = min(case.periods.items(), key=lambda item: item[1])
-        steps = period / case.time_step
-        if case.time_step >= timestep.VERLET_LIMIT * period:
-            wanted = math.ceil(scene.impact.steps_per_collision / (timestep.VERLET_LIMIT * steps)) + 1
-            raise PlanError(
-                f"{scene.source}: case {case.label}: {steps:.2g} steps in a period of the {mode} mode; velocity Verlet needs"
-                f" more than pi. Set steps_per_collision to {wanted} at least, better to ten times that."
-            )
-        if case.time_step > RESOLVED_FRACTION * period and mode not in named:
-            named.add(mode)
-            warnings.append(
-                f"case {case.label}: only {steps:.2g} steps in a period of the {mode} mode. Raise steps_per_collision to"
-                f" {math.ceil(scene.impact.steps_per_collision / (RESOLVED_FRACTION * steps))} for ten."
-            )
-    return tuple(warning for warning in warnings if warning)

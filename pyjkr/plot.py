@@ -33,7 +33,7 @@ def restitution_figure(comparison: Comparison, curves: pd.DataFrame) -> Figure:
     curves : DataFrame
         What to draw as lines, from `compare.oracle_curves`.
     """
-    figure, (axes,) = _figure(1, (7.2, 4.6))
+    figure, (axes,) = panels(1, (7.2, 4.6))
     table = comparison.table
     groups = list(dict.fromkeys(zip(table["modulus_ratio"], table["rule"], strict=True)))
     scaled = [ratio for ratio, rule in groups if rule == "scaled"]
@@ -80,7 +80,7 @@ def velocity_figure(comparison: Comparison) -> Figure:
     """
     speed = comparison.plan.scene.figures.velocity_speed
     cases = [case for case in comparison.plan.cases if case.speed == speed and case.rule == "scaled"]
-    figure, (left, right) = _figure(2, (8.6, 4.2))
+    figure, (left, right) = panels(2, (8.6, 4.2))
     longest = max((_shown_time(comparison, case) for case in cases), default=0.0)
     for case, style, (_, _, colour) in zip(
         cases, _cycle(LINE_STYLES, len(cases)), _cycle(SCALED_MARKERS, len(cases)), strict=True
@@ -110,7 +110,7 @@ def save(figure: Figure, path: Path) -> None:
     figure.savefig(path, dpi=200)
 
 
-def _figure(columns: int, size: tuple[float, float]):
+def panels(columns: int, size: tuple[float, float]):
     """A figure without pyplot's global state, and its axes in a row."""
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)

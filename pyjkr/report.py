@@ -27,7 +27,7 @@ def clear(directory: Path) -> None:
         (directory / name).unlink(missing_ok=True)
 
 
-def write(comparison: Comparison, directory: Path, scene_digest: str, simulator: str | None) -> None:
+def write(comparison: Comparison, directory: Path, scene_digest: str) -> None:
     """Write all files of a comparison.
 
     Parameters
@@ -38,8 +38,6 @@ def write(comparison: Comparison, directory: Path, scene_digest: str, simulator:
         Where to.
     scene_digest : str
         SHA-256 of the scene file.
-    simulator : str or None
-        Path of the simulator; None for the oracle.
     """
     comparison.table.to_csv(directory / "table.csv", index=False)
     (directory / "table.txt").write_text(tables.comparison_text(comparison), encoding="utf-8")
@@ -48,12 +46,12 @@ def write(comparison: Comparison, directory: Path, scene_digest: str, simulator:
         plot.save(plot.velocity_figure(comparison), directory / "velocity.png")
     unfinished = directory / f".{RESULT_NAME}.{os.getpid()}"
     unfinished.write_text(
-        json.dumps(_result(comparison, scene_digest, simulator), indent=2, allow_nan=False) + "\n", encoding="utf-8"
+        json.dumps(_result(comparison, scene_digest), indent=2, allow_nan=False) + "\n", encoding="utf-8"
     )
     unfinished.replace(directory / RESULT_NAME)
 
 
-def _result(comparison: Comparison, scene_digest: str, simulator: str | None) -> dict[str, Any]:
+def _result(comparison: Comparison, scene_digest: str) -> dict[str, Any]:
     return {
         "title": comparison.plan.scene.title,
         "scene_sha256": scene_digest,
@@ -67,7 +65,7 @@ def _result(comparison: Comparison, scene_digest: str, simulator: str | None) ->
         "table": [{key: _finite(value) for key, value in row.items()} for row in comparison.table.to_dict("records")],
         "left_out": [dataclasses.asdict(item) for item in comparison.plan.left_out],
         "warnings": list(comparison.plan.warnings),
-        "versions": versions() | {"simulator": simulator},
+        "versions": versions() | {"simulator": "; ".join(comparison.simulators) or None},
     }
 
 

@@ -46,6 +46,14 @@ def force_factor(modulus_ratio: float) -> float:
     return modulus_ratio**0.4
 
 
+def smallest_modulus_ratio(least_force_factor: float) -> float:
+    """Lowest q at which forces keep at least a given share of their real value: `force_factor` inverted, share^(5/2).
+
+    Above 1 no reduced stiffness, and not the real one either, is enough.
+    """
+    return least_force_factor**2.5
+
+
 def contact_radius_factor(modulus_ratio: float) -> float:
     """Factor on contact radii: a_0 ~ (gamma/E)^(1/3) with eq. 24 gives q^(-1/5)."""
     return modulus_ratio**-0.2

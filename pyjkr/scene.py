@@ -167,6 +167,17 @@ class Reduction(_Table):
         return self
 
 
+class Environment(_Table):
+    """What may pull at a contact in the real application: drag, weight, a shaken wall.
+
+    A check only: the impacts are simulated without these forces. Reduced stiffness goes with a reduced pull-off force,
+    q^(2/5) F_C, while outer forces stay as they are (Haervig 2017, eq. 24): the plan compares the two.
+    """
+
+    external_force: Annotated[float, _quantity("N", "Give the strongest force that may pull a contact apart.", ge=0)] = 0.0
+    acceleration: Annotated[float, _quantity("m/s2", "It acts on the mass of a sphere; 9.81 for its weight.", ge=0)] = 0.0
+
+
 class Numerics(_Table):
     """Settings of the neighbour search; the plan chooses what is left out."""
 
@@ -188,6 +199,7 @@ class Scene(_Table):
     contact: Annotated[tuple[Contact, ...], Field(min_length=1)]
     impact: Impact
     reduction: Reduction = Reduction()
+    environment: Environment = Environment()
     numerics: Numerics = Numerics()
     figures: Figures = Figures()
     source: Annotated[str, Field(init=False)] = "scene"

@@ -141,6 +141,7 @@ def test_the_oracle_runs_a_scene_without_liggghts(capsys, tmp_path):
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == RESULTS
     result = json.loads((tmp_path / "out" / "result.json").read_text())
     assert (result["engine"], result["passed"]) == ("oracle", True)
+    assert result["versions"]["simulator"] is None
     assert result["table"][0]["e_eff_liggghts"] is None
     assert "0.718637" in out
     assert out.strip() == (tmp_path / "out" / "table.txt").read_text().strip()
@@ -224,7 +225,8 @@ def test_finished_runs_are_kept_and_compared_again(capsys, tmp_path, plugin):
     capsys.readouterr()
     (directory / "result.json").unlink()
     assert run("compare", directory) == 0
-    assert (directory / "result.json").is_file()
+    result = json.loads((directory / "result.json").read_text())
+    assert (result["engine"], result["versions"]["simulator"]) == ("liggghts", plugin.name)
     columns = slice(0, 70)  # up to the step counts; one wall time differs
     assert [line[columns] for line in capsys.readouterr().out.splitlines()] == [line[columns] for line in first.splitlines()]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -56,3 +57,68 @@ def test_damping_never_presses_deeper_than_the_bound():
     law = oracle.NormalContact(pair.effective_radius, pair.effective_modulus, pair.surface_energy, restitution_coefficient=0.7)
     for speed in (0.05, 0.8, 9.0):
         assert oracle.impact(law, pair.effective_mass, speed).maximum_overlap < contact.maximum_overlap(pair, speed)
+
+
+# Of contact radii: the root's own round-off, and near rupture that of the overlap, which the double root turns into
+# its square root.
+ROUND_OFF_OF_ROOT = 1e-14
+ROUND_OFF_NEAR_RUPTURE = 1e-7
+
+
+@given(energy=st.floats(math.log(1e-12), math.log(10.0)).map(math.exp), wall=st.booleans())
+def test_contact_radius_is_that_of_the_oracle_from_rupture_to_deep_compression(energy, wall):
+    pair = spheres(energy=energy, wall=wall)
+    law = oracle.NormalContact(pair.effective_radius, pair.effective_modulus, pair.surface_energy, "jkr")
+    rupture = contact.rupture_overlap(pair, "jkr")
+    neck = rupture * (1 - np.logspace(-3, 0, 60))
+    pressed = -rupture * np.logspace(-8, 8, 90)
+    for overlaps in (neck, pressed):
+        found = contact.contact_radius(overlaps, pair)
+        # 1e-13: a distance of 1e-3 from rupture costs two digits.
+        np.testing.assert_allclose(found, oracle.contact_radius(law, overlaps), rtol=1e-13)
+    beyond = rupture * (1 - np.logspace(-15, -3, 30))
+    np.testing.assert_allclose(
+        contact.contact_radius(beyond, pair), oracle.contact_radius(law, beyond), rtol=ROUND_OFF_NEAR_RUPTURE
+    )
+
+
+@given(ratio=st.floats(math.log(0.7), math.log(40)).map(math.exp))
+def test_contact_radius_gives_the_overlap_back(ratio):
+    pair = spheres()
+    a = ratio * pair.equilibrium_contact_radius
+    assert contact.contact_radius(contact.overlap(pair, a), pair) == pytest.approx(a, rel=20 * ROUND_OFF_OF_ROOT)
+
+
+def test_contact_radius_at_the_named_points():
+    # a_0 at delta = a_0^2/(3 R); (2/3)^(2/3) a_0 without overlap; 6^(-2/3) a_0 = 0.302853432 a_0 at rupture, and then none.
+    pair = spheres()
+    zero_load, rupture = pair.equilibrium_contact_radius, contact.rupture_overlap(pair, "jkr")
+    overlaps = [zero_load**2 / (3 * pair.effective_radius), 0.0, rupture, 1.001 * rupture]
+    expected = np.array([1.0, (2 / 3) ** (2 / 3), 0.302853432, 0.0]) * zero_load
+    np.testing.assert_allclose(contact.contact_radius(overlaps, pair), expected, rtol=ROUND_OFF_NEAR_RUPTURE)
+
+
+def test_contact_radius_without_adhesion_is_that_of_hertz():
+    pair = spheres(energy=0.0)
+    found = contact.contact_radius([3e-9, 0.0, -2e-9], pair)
+    np.testing.assert_allclose(found, [math.sqrt(pair.effective_radius * 3e-9), 0.0, 0.0], rtol=ROUND_OFF_OF_ROOT)
+
+
+def test_contact_radius_takes_one_pair_for_each_contact():
+    alone = [spheres(energy=0.03), spheres(energy=0.0), spheres(energy=0.2, wall=True)]
+    both = dataclasses.replace(
+        alone[0],
+        effective_radius=np.array([pair.effective_radius for pair in alone]),
+        surface_energy=np.array([pair.surface_energy for pair in alone]),
+    )
+    overlaps = [2e-9, 5e-10, -1e-10]
+    expected = [float(contact.contact_radius(one, pair)) for one, pair in zip(overlaps, alone, strict=True)]
+    np.testing.assert_allclose(contact.contact_radius(overlaps, both), expected, rtol=ROUND_OFF_OF_ROOT)
+
+
+def test_the_simplified_contact_holds_eight_ninths_of_the_pull_off_force():
+    pair = spheres()
+    law = oracle.NormalContact(pair.effective_radius, pair.effective_modulus, pair.surface_energy, "jkr")
+    assert contact.holding_force(pair, "jkr/simplified") == pytest.approx(-float(oracle.elastic_force(law, 0.0)), rel=1e-14)
+    overlaps = np.linspace(contact.rupture_overlap(pair, "jkr"), 0, 20_001)
+    assert contact.holding_force(pair, "jkr") == pytest.approx(-oracle.elastic_force(law, overlaps).min(), rel=1e-7)

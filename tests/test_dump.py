@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyjkr.dump import DEFAULT_KEYWORDS, PAIR_COLUMNS, WALL_COLUMNS, read, read_contacts
+from pyjkr.dump import DEFAULT_KEYWORDS, PAIR_COLUMNS, WALL_COLUMNS, jkr_history, read, read_contacts
 from pyjkr.errors import DumpError, RunError
 from pyjkr.run import Simulator, run_deck
 
@@ -209,6 +209,51 @@ def test_columns_are_named_in_the_order_of_liggghts_whatever_that_of_the_keyword
     frame = read_contacts(dump(contacts(6, ["4 9 0 0.25 0.5 1e-6"])), ["delta", "history", "id"], n_history=2)
     assert list(frame.columns) == ["step", "id1", "id2", "periodic", "history_1", "history_2", "overlap"]
     assert [str(dtype) for dtype in frame.dtypes] == ["int64"] * 4 + ["float64"] * 3
+
+
+def test_history_values_can_be_named(dump: Write) -> None:
+    path = dump(contacts(6, ["4 9 0 0.25 0.5 1e-6"]))
+    frame = read_contacts(path, ["delta", "history", "id"], history_names=["fast", "slow"])
+    assert list(frame.columns) == ["step", "id1", "id2", "periodic", "fast", "slow", "overlap"]
+    assert len(read_contacts(path, ["delta", "history", "id"], n_history=2, history_names=["fast", "slow"])) == 1
+    for names, message in (
+        (["fast"], r"c_ID\[5\].*1 history values"),
+        (["slow", "slow"], "two columns would be named 'slow'"),
+        (["overlap", "slow"], "two columns would be named 'overlap'"),
+    ):
+        with pytest.raises(DumpError, match=message):
+            read_contacts(path, ["delta", "history", "id"], history_names=names)
+    with pytest.raises(DumpError, match="n_history = 3, but history_names holds 2"):
+        read_contacts(path, ["delta", "history", "id"], n_history=3, history_names=["fast", "slow"])
+
+
+def test_history_of_the_jkr_models_is_named_in_the_order_of_the_plugin() -> None:
+    assert jkr_history("jkr/simplified", event_correction=False) == ()
+    assert jkr_history("jkr", "no_history") == ("in_contact", "carried_speed")
+    names = jkr_history("jkr", "jkr", "krijt", twisting=True)
+    assert [name.removesuffix("_x") for name in names if not name.endswith(("_y", "_z"))] == [
+        "sliding_displacement",
+        "rolling_displacement",
+        "in_contact",
+        "carried_speed",
+        "twisting_angle",
+    ]
+    assert len(names) == 9
+    assert jkr_history("jkr", "history", "epsd2", event_correction=False)[3] == "rolling_moment_x"
+
+
+@pytest.mark.parametrize(
+    ("styles", "options", "message"),
+    [
+        (("hertz",), {}, "model 'hertz' does not go with the jkr models. Known: jkr/simplified, jkr"),
+        (("jkr", "luding"), {}, "tangential 'luding'"),
+        (("jkr", "jkr", "cdt"), {}, "rolling_friction 'cdt'"),
+        (("jkr", "jkr", "epsd2"), {"twisting": True}, "twisting needs rolling_friction 'krijt'"),
+    ],
+)
+def test_history_of_styles_that_do_not_combine_is_refused(styles: tuple[str], options: dict[str, bool], message: str) -> None:
+    with pytest.raises(DumpError, match=message):
+        jkr_history(*styles, **options)
 
 
 @pytest.mark.parametrize(

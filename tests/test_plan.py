@@ -107,20 +107,6 @@ def test_moduli_outside_liggghts_range_are_announced(tmp_path):
     assert planned(tmp_path, wide).cases[0].stiffness_commands == ("soft_particles", "hard_particles")
 
 
-def test_a_mode_faster_than_the_time_step_is_refused_by_name(tmp_path):
-    # The real rolling stiffness does not fall with E_mod: at 1e-5 it is the fastest mode.
-    text = edited(
-        PAIR, ("[0.5, 0.001]", "[1e-5]"), ("steps_per_collision = 150", "steps_per_collision = 12"), ("[0.3, 1.5]", "[0.02]")
-    )
-    with pytest.raises(PlanError, match=r"steps in a period of the rolling mode.*Set steps_per_collision to \d+ at least"):
-        planned(tmp_path, edited(text, ("[reduction]", "[reduction]\nmaximum_overlap = 1.0")))
-
-
-def test_a_poorly_resolved_mode_is_warned_of_by_name(tmp_path):
-    made = planned(tmp_path, edited(PAIR, ("steps_per_collision = 150", "steps_per_collision = 12")))
-    assert any("steps in a period of the sliding mode" in warning for warning in made.warnings)
-
-
 def test_enough_steps_of_a_jkr_contact_need_no_warning(tmp_path):
     assert planned(tmp_path, DAHNEKE).warnings == ()
 

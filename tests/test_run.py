@@ -45,7 +45,7 @@ def bare(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     for folder in ("path", "venv", "checkout/pyjkr", "checkout/build"):
         (tmp_path / folder).mkdir(parents=True)
     monkeypatch.setattr(sys, "executable", str(tmp_path / "venv/python"))
-    monkeypatch.setattr("pyjkr.run.__file__", str(tmp_path / "checkout/pyjkr/run.py"))
+    monkeypatch.setattr("pyjkr.simulator.__file__", str(tmp_path / "checkout/pyjkr/simulator.py"))
     return tmp_path
 
 
@@ -143,7 +143,7 @@ def test_run_that_takes_too_long_is_ended(deck: Path, tmp_path: Path) -> None:
 
 
 def test_program_that_ignores_the_first_signal_is_killed(deck: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pyjkr.run._GRACE_SECONDS", 0.3)
+    monkeypatch.setattr("pyjkr.process._GRACE_SECONDS", 0.3)
     stubborn = program(tmp_path / "sim", "trap '' INT TERM; echo $$ > pid; while :; do sleep 0.1; done")
     with pytest.raises(RunError, match="stopped after"):
         run_deck(deck, simulator=stubborn, timeout=0.5)
@@ -162,6 +162,38 @@ def test_progress_can_be_forced_and_goes_to_stderr(deck: Path, tmp_path: Path, c
     shown = capfd.readouterr()
     assert shown.out == ""
     assert "30/30" in shown.err
+
+
+def test_every_new_step_is_told_once(deck: Path, tmp_path: Path) -> None:
+    told: list[int] = []
+    script = (
+        'printf "Step Atoms\\n0 3\\n10 3\\nnoise\\n20 3\\nLoop time of 1 on 1 procs for 20 steps\\nStep Atoms\\n20 3\\n30 3\\n"'
+    )
+    run_deck(deck, simulator=program(tmp_path / "sim", script), on_step=told.append)
+    assert told == [0, 10, 20, 30]
+
+
+def test_a_watcher_that_raises_ends_the_run(deck: Path, tmp_path: Path) -> None:
+    def stop(step: int) -> None:
+        raise KeyboardInterrupt
+
+    stubborn = program(tmp_path / "sim", 'echo $$ > pid; printf "Step Atoms\\n0 3\\n"; exec sleep 60')
+    with pytest.raises(KeyboardInterrupt):
+        run_deck(deck, simulator=stubborn, on_step=stop)
+    with pytest.raises(ProcessLookupError):
+        os.kill(int((tmp_path / "pid").read_text()), 0)
+    assert read_run(tmp_path) is None
+
+
+def test_the_record_says_which_simulator_ran(deck: Path, tmp_path: Path) -> None:
+    simulator = program(tmp_path / "sim", "exit 0")
+    assert run_deck(deck, simulator=simulator).simulator == str(tmp_path / "sim")
+    assert read_run(tmp_path).simulator == str(tmp_path / "sim")
+    preloaded = Simulator(simulator.executable, preload=Path("libm.so.6"))
+    assert run_deck(deck, simulator=preloaded).simulator == f"LD_PRELOAD=libm.so.6 {tmp_path / 'sim'}"
+    record = tmp_path / RECORD
+    record.write_text("".join(line for line in record.read_text().splitlines() if "simulator" not in line).replace(",}", "}"))
+    assert read_run(tmp_path).simulator is None
 
 
 @pytest.mark.parametrize("damage", ['{"status": "complete"}', "{", "[]", '{"status": "running", "deck": "in.deck"}'])

@@ -51,3 +51,8 @@ def test_a_stiff_small_sphere_is_warned_of_and_a_soft_one_is_not():
 
 def test_without_surface_energy_there_is_nothing_to_warn_of():
     assert scaling.tabor_warning(0.4e-6, 70e9, 0.0) is None
+
+
+@given(ratio=st.floats(math.log(1e-6), 0.0).map(math.exp))
+def test_smallest_modulus_ratio_keeps_just_the_share_of_the_force(ratio):
+    assert scaling.smallest_modulus_ratio(scaling.force_factor(ratio)) == pytest.approx(ratio, rel=1e-12)

@@ -174,6 +174,24 @@ def test_a_fault_ends_in_one_line_that_says_where_what_and_how_to_fix_it(tmp_pat
     assert complaint(tmp_path, edited(DAHNEKE, change)) == message
 
 
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        (
+            "external_force = -2e-8",
+            "environment: external_force = -2e-08 N must be >= 0. Give the strongest force that may pull a contact apart.",
+        ),
+        (
+            "acceleration = nan",
+            "environment: acceleration = nan m/s2 must be a finite number. It acts on the mass of a sphere; 9.81 for its weight.",
+        ),
+        ("accelaration = 9.81", "environment: unknown key 'accelaration'. Did you mean 'acceleration'?"),
+    ],
+)
+def test_an_environment_that_makes_no_sense_is_refused(tmp_path, line, message):
+    assert complaint(tmp_path, f"{DAHNEKE}\n[environment]\n{line}\n") == message
+
+
 def test_rolling_without_surface_energy_is_refused(tmp_path):
     assert complaint(tmp_path, edited(PAIR, ("surface_energy = 0.04", "surface_energy = 0.0"))) == (
         "contact 'polystyrene'-'silica & co': surface_energy = 0 leaves rolling_friction = 'krijt' without any moment."

@@ -5,11 +5,12 @@ from __future__ import annotations
 import dataclasses
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyjkr import contact, scaling, timestep
+from pyjkr import contact, oracle, scaling, timestep
 from pyjkr.contact import PairProperties
 
 # Two polystyrene spheres of 1 um radius: E_i = 3.8 GPa, nu = 0.33, rho = 1050 kg/m3, gamma = 0.05 J/m2.
@@ -65,14 +66,16 @@ def test_stuck_period_of_dahnekes_sphere():
 
 
 def test_modes_at_a_wall_in_units_of_the_normal_one():
-    # Same material, nu = 0.33: sliding 2.163, twisting 1.293 a_0/R; rolling without slip 0.890870806 a_0/R,
-    # and sqrt(7/2) times that where nothing hinders slip.
+    # Same material, nu = 0.33: sliding 2.163, twisting 1.293 a_0/R; rolling without slip 0.890870806 a_0/R, sqrt(7/4) times
+    # that where nothing hinders slip, sqrt(7/2) times if slip did not count as rolling.
     pair = spheres(wall=True)
     zero_load = pair.equilibrium_contact_radius
     normal, slender = timestep.stuck_period(pair), zero_load / pair.effective_radius
     assert normal / timestep.sliding_period(pair, zero_load) == pytest.approx(2.163, rel=5e-4)
     assert normal / timestep.twisting_period(pair, zero_load) == pytest.approx(1.293 * slender, rel=5e-4)
     assert normal / timestep.rolling_period(pair, zero_load) == pytest.approx(0.890870806 * math.sqrt(3.5) * slender, rel=1e-8)
+    free = normal / timestep.rolling_period(pair, zero_load, timestep.spin_share((RADIUS,), (MASS,)))
+    assert free == pytest.approx(0.890870806 * math.sqrt(1.75) * slender, rel=1e-8)
 
 
 @given(ratio=st.floats(math.log(1e-4), 0.0).map(math.exp), speed=st.floats(math.log(1e-2), math.log(50)).map(math.exp))
@@ -95,3 +98,46 @@ def test_without_adhesion_nothing_oscillates_and_hertz_sets_the_step():
     assert timestep.rolling_period(pair, 1e-8) == math.inf
     hertz = timestep.hertz_collision_time(pair.effective_radius, pair.effective_mass, pair.effective_modulus, 0.6)
     assert timestep.time_step(pair, 0.6, 40) == hertz / 40
+
+
+def test_spins_of_like_spheres_roll_without_slip_and_a_tiny_one_sees_a_wall():
+    assert timestep.spin_share((RADIUS, RADIUS), (MASS, MASS)) == 1
+    tiny = timestep.spin_share((1e-6, 1e-2), (2e-15, 2e-3))
+    assert tiny == pytest.approx(timestep.spin_share((1e-6,), (2e-15,)), rel=2e-4)
+    assert timestep.spin_share((3e-6, 0.7e-6), (5e-14, 4e-15)) == timestep.spin_share((0.7e-6, 3e-6), (4e-15, 5e-14))
+
+
+@given(ratio=st.floats(1.0, 30.0), energy=st.sampled_from([ENERGY, 1e-3]))
+def test_normal_period_is_that_of_the_slope_of_the_oracle(ratio, energy):
+    pair = spheres(energy=energy)
+    law = oracle.NormalContact(pair.effective_radius, pair.effective_modulus, pair.surface_energy, "jkr")
+    a = ratio * pair.equilibrium_contact_radius
+    overlap = contact.overlap(pair, a)
+    step = 1e-5 * pair.equilibrium_contact_radius**2 / pair.effective_radius
+    force = [float(oracle.elastic_force(law, overlap + sign * step)) for sign in (-1, 1)]
+    slope = (force[1] - force[0]) / (2 * step)
+    # The difference of two forces, a fraction 1e-5 apart.
+    expected = 2 * math.pi * math.sqrt(pair.effective_mass / slope)
+    assert timestep.normal_period(pair, a) == pytest.approx(expected, rel=1e-6)
+
+
+def test_normal_period_is_the_stuck_one_at_rest_and_that_of_hertz_without_adhesion():
+    pair = spheres()
+    assert timestep.normal_period(pair, pair.equilibrium_contact_radius) == pytest.approx(
+        timestep.stuck_period(pair), rel=1e-14
+    )
+    plain = spheres(energy=0.0)
+    hertz = 2 * math.pi * math.sqrt(plain.effective_mass / (2 * plain.effective_modulus * 3e-8))
+    assert timestep.normal_period(plain, 3e-8) == pytest.approx(hertz, rel=1e-14)
+
+
+@given(h=st.floats(0.05, 4), ratio=st.floats(0, 3))
+def test_verlet_limit_is_where_an_oscillation_begins_to_grow(h, ratio):
+    # x+ - 2 x + x- + 2 zeta h (x - x-) + h^2 x = 0, h = dt omega: the larger root leaves the unit circle.
+    growth = np.abs(np.roots([1, 2 * ratio * h + h**2 - 2, 1 - 2 * ratio * h])).max()
+    period = 3.7e-9
+    time_step = h * period / (2 * math.pi)
+    if time_step < 0.999 * timestep.verlet_limit(period, ratio):
+        assert growth <= 1 + 1e-9
+    elif time_step > 1.001 * timestep.verlet_limit(period, ratio):
+        assert growth > 1
