@@ -23,11 +23,17 @@ _POLL_SECONDS = 0.1
 # mpirun gives its ranks 2 s to obey SIGTERM before it kills them.
 _GRACE_SECONDS = 5.0
 
+# One process without networks: Open MPI starts in a third of the time.
+_ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_pml": "ob1", "OMPI_MCA_btl": "self"}
+
 
 def command(simulator: Simulator, deck: str, log: str, ranks: int) -> tuple[list[str], dict[str, str]]:
     """Words and environment that start LIGGGHTS on a deck in its own directory."""
     words = [str(simulator.executable), "-in", deck, "-log", log]
     environment = dict(os.environ)
+    if ranks == 1:
+        # Open MPI looks for networks and starts a daemon for one process too, which takes longer than a small run.
+        environment = _ALONE | environment
     preload = None
     if simulator.preload:
         preload = " ".join(filter(None, [str(simulator.preload), environment.get("LD_PRELOAD")]))

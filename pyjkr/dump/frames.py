@@ -14,6 +14,13 @@ from pyjkr.dump.rows import blocks, fail_at_row, parse
 from pyjkr.dump.snapshots import Paths, Snapshot, expand, load, snapshots_of
 
 
+class Boxes(dict):
+    """Box of each step. pandas copies `attrs` deeply at every operation; what nobody changes need not be copied."""
+
+    def __deepcopy__(self, memo: object) -> Boxes:
+        return self
+
+
 def read(path: Paths, *, allow_nonfinite: bool = False) -> pd.DataFrame:
     """Read text dumps of `dump custom` or `dump local` into one tidy frame.
 
@@ -51,7 +58,7 @@ def read(path: Paths, *, allow_nonfinite: bool = False) -> pd.DataFrame:
     frame = pd.concat([parse(block, allow_nonfinite) for block in blocks(snapshots)], ignore_index=True)
     frame.insert(0, "step", np.repeat([s.step for s in snapshots], [s.count for s in snapshots]).astype(np.int64))
     _refuse_repeated_atoms(frame, snapshots)
-    frame.attrs["box"] = {snapshot.step: snapshot.box for snapshot in snapshots}
+    frame.attrs["box"] = Boxes({snapshot.step: snapshot.box for snapshot in snapshots})
     return frame
 
 
