@@ -1,0 +1,1 @@
+"""Benchmarks of the contact laws: `python bench/run.py --help`."""
