@@ -165,7 +165,8 @@ class ContactModel : public lcm::ContactModelBase {
     return {&materials_(sidata.itype, sidata.jtype), radius, last_inverse_root_, sidata.meff};
   }
 
-  void contact(Data& sidata, Forces& i, Forces& j) {
+  // One function for the compiler: vectors stay in registers between the laws.
+  __attribute__((flatten)) void contact(Data& sidata, Forces& i, Forces& j) {
     surface_.surfacesIntersect(sidata, i, j);
     if (sidata.contact_flags) *sidata.contact_flags |= lcm::CONTACT_NORMAL_MODEL;
     ContactRecord record;

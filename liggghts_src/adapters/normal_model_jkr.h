@@ -75,7 +75,7 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
       const double carried = history[speed_slot_] != 0.0 ? history[speed_slot_] : sidata.vn;
       force = damped_force(record.normal.elastic_force, record.stiffness.damping, sidata.vn, carried, dt, pair.effective_mass);
     }
-    history[speed_slot_] = sidata.vn + dt * force / pair.effective_mass;
+    history[speed_slot_] = sidata.vn + dt / pair.effective_mass * force;
     return force;
   }
 

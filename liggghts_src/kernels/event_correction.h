@@ -47,7 +47,7 @@ struct NormalStep {
 inline double damped_force(double elastic_force, double damping, double separation_speed, double carried_speed,
                            double time_step, double effective_mass) {
   const double speed = 1.5 * separation_speed - 0.5 * carried_speed;
-  return (elastic_force - damping * speed) / (1.0 + 0.5 * damping * time_step / effective_mass);
+  return (elastic_force - damping * speed) / (1.0 + 0.5 * damping * (time_step / effective_mass));
 }
 
 // Part of a step that a contact existed when it was made in it: free flight before, so the path is straight.
