@@ -60,7 +60,7 @@ double pyjkr_fraction_before_break(double overlap, double previous_overlap, doub
 }
 
 void pyjkr_turned(const double* stored, const double* normal, const double* normal_change, double spin_angle, double* result) {
-  store(turned(load(stored), {load(normal), load(normal_change), spin_angle}), result);
+  store(turned(load(stored), turn_of(load(normal), load(normal_change), spin_angle)), result);
 }
 
 double pyjkr_sliding_limit(double elastic_force, double pull_off, double friction) {

@@ -42,12 +42,12 @@ constexpr const char* kJkr = "jkr";
 constexpr const char* kEpsd2 = "epsd2";
 constexpr const char* kKrijt = "krijt";
 
-using TangentialOff = Slot<Stock<lcm::TangentialModel<lcm::TANGENTIAL_OFF>>, lcm::TANGENTIAL_OFF, kOff>;
-using TangentialNoHistory = Slot<Stock<lcm::TangentialModel<lcm::TANGENTIAL_NO_HISTORY>>, lcm::TANGENTIAL_NO_HISTORY, kNoHistory>;
-using TangentialHistory = Slot<Stock<lcm::TangentialModel<lcm::TANGENTIAL_HISTORY>>, lcm::TANGENTIAL_HISTORY, kHistory>;
+using TangentialOff = Slot<Stock<lcm::TangentialModel<lcm::TANGENTIAL_OFF>, true>, lcm::TANGENTIAL_OFF, kOff>;
+using TangentialNoHistory = Slot<Stock<lcm::TangentialModel<lcm::TANGENTIAL_NO_HISTORY>, false>, lcm::TANGENTIAL_NO_HISTORY, kNoHistory>;
+using TangentialHistory = Slot<Stock<lcm::TangentialModel<lcm::TANGENTIAL_HISTORY>, false>, lcm::TANGENTIAL_HISTORY, kHistory>;
 using TangentialJkr = Slot<TangentialModelJkr, kTangentialId, kJkr>;
-using RollingOff = Slot<Stock<lcm::RollingModel<lcm::ROLLING_OFF>>, lcm::ROLLING_OFF, kOff>;
-using RollingEpsd2 = Slot<Stock<lcm::RollingModel<lcm::ROLLING_EPSD2>>, lcm::ROLLING_EPSD2, kEpsd2>;
+using RollingOff = Slot<Stock<lcm::RollingModel<lcm::ROLLING_OFF>, true>, lcm::ROLLING_OFF, kOff>;
+using RollingEpsd2 = Slot<Stock<lcm::RollingModel<lcm::ROLLING_EPSD2>, false>, lcm::ROLLING_EPSD2, kEpsd2>;
 using RollingKrijt = Slot<RollingModelKrijt, kRollingId, kKrijt>;
 
 template <class NormalSlot, class TangentialSlot, class RollingSlot>

@@ -22,10 +22,11 @@ namespace pyjkr {
 namespace lcm = LIGGGHTS::ContactModels;
 
 // Marks a slot that a model of LIGGGHTS fills.
-template <class Model>
+template <class Model, bool Off>
 struct Stock : Model {
   static constexpr bool is_jkr = false;
   static constexpr bool is_krijt = false;
+  static constexpr bool is_off = Off;
   using Model::Model;
 };
 
@@ -165,77 +166,104 @@ class ContactModel : public lcm::ContactModelBase {
     return {&materials_(sidata.itype, sidata.jtype), radius, last_inverse_root_, sidata.meff};
   }
 
+  // Both slots are ours or empty: nobody reads what LIGGGHTS' surface model leaves in the data.
+  static constexpr bool kOwnSlots = (Tangential::is_jkr || Tangential::is_off) && (Rolling::is_krijt || Rolling::is_off);
+
   // One function for the compiler: vectors stay in registers between the laws.
   __attribute__((flatten)) void contact(Data& sidata, Forces& i, Forces& j) {
-    surface_.surfacesIntersect(sidata, i, j);
-    if (sidata.contact_flags) *sidata.contact_flags |= lcm::CONTACT_NORMAL_MODEL;
     ContactRecord record;
-    record.pair = pair_of(sidata);
     record.update_history = sidata.computeflag && sidata.shearupdate;
+    const Vec3 en = load(sidata.en);
+    // contact lists (compute pair/gran/local) are told all that the surface model knows
+    if (!kOwnSlots || !record.update_history) surface_.surfacesIntersect(sidata, i, j);
+    approach(sidata, en, record);
+    record.pair = pair_of(sidata);
     if (Law::has_neck && record.update_history && !normal_.has_contact(sidata.contact_history)) check_room(sidata, record.pair);
 
-    const Vec3 en = load(sidata.en);
     const double normal_force = normal_.touch(
         sidata, [this](const Data& data) { return previous_overlap(data, data.deltan, data.vn); }, record);
-    sidata.kn = sidata.deltan > 0.0 ? record.normal.elastic_force / sidata.deltan : 0.0;
-    sidata.kt = record.stiffness.tangential_stiffness;
-    sidata.gammat = record.stiffness.tangential_damping;
-    sidata.Fn = normal_force;  // what stock sliding and rolling models take their limits from
-    add_force(normal_force * en, sidata, i, j);
+    int flags = lcm::CONTACT_NORMAL_MODEL;
+    Vec3 force = normal_force * en;
+    Vec3 moment_i{0.0, 0.0, 0.0}, moment_j{0.0, 0.0, 0.0};
 
     if constexpr (Tangential::is_jkr || Rolling::is_krijt) follow(sidata, en, record);
     if constexpr (Tangential::is_jkr) {
-      if (sidata.contact_flags) *sidata.contact_flags |= lcm::CONTACT_TANGENTIAL_MODEL;
-      const Vec3 force = tangential_.force(record, sidata.contact_history);
-      add_force(force, sidata, i, j);
-      const Vec3 arm = -cross(en, force);
-      accumulate(sidata.cri * arm, i.delta_torque);
-      if (!sidata.is_wall) accumulate(sidata.crj * arm, j.delta_torque);
-    } else if (sidata.deltan >= 0.0) {
-      tangential_.surfacesIntersect(sidata, i, j);
-    } else if (sidata.contact_history) {
-      tangential_.surfacesClose(sidata, i, j);  // stock sliding knows no neck
+      flags |= lcm::CONTACT_TANGENTIAL_MODEL;
+      const Vec3 sliding = tangential_.force(record, sidata.contact_history);
+      force = force + sliding;
+      const Vec3 arm = cross(sliding, en);
+      moment_i = sidata.cri * arm;
+      moment_j = sidata.crj * arm;
     }
     if constexpr (Rolling::is_krijt) {
-      if (sidata.contact_flags) *sidata.contact_flags |= lcm::CONTACT_ROLLING_MODEL;
-      const Vec3 moment = rolling_.moment(record, sidata.contact_history);
-      accumulate(moment, i.delta_torque);
-      if (!sidata.is_wall) accumulate(-moment, j.delta_torque);
-    } else if (sidata.deltan >= 0.0) {
-      rolling_.surfacesIntersect(sidata, i, j);
-    } else if (sidata.contact_history) {
-      rolling_.surfacesClose(sidata, i, j);
+      flags |= lcm::CONTACT_ROLLING_MODEL;
+      const Vec3 rolling = rolling_.moment(record, sidata.contact_history);
+      moment_i = moment_i + rolling;
+      moment_j = moment_j - rolling;
+    }
+    if (sidata.contact_flags) *sidata.contact_flags |= flags;
+    add_force(force, sidata, i, j);
+    accumulate(moment_i, i.delta_torque);
+    if (!sidata.is_wall) accumulate(moment_j, j.delta_torque);
+    if constexpr (!kOwnSlots) stock_slots(sidata, normal_force, record, i, j);
+  }
+
+  // Tangential and rolling models of LIGGGHTS beside a jkr normal force. They know no neck.
+  void stock_slots(Data& sidata, double normal_force, const ContactRecord& record, Forces& i, Forces& j) {
+    sidata.kn = sidata.deltan > 0.0 ? record.normal.elastic_force / sidata.deltan : 0.0;
+    sidata.kt = record.stiffness.tangential_stiffness;
+    sidata.gammat = record.stiffness.tangential_damping;
+    sidata.Fn = normal_force;  // what their limits are taken from
+    const bool neck = sidata.deltan < 0.0;
+    if (neck && !sidata.contact_history) return;
+    if constexpr (!Tangential::is_jkr) {
+      if (neck)
+        tangential_.surfacesClose(sidata, i, j);
+      else
+        tangential_.surfacesIntersect(sidata, i, j);
+    }
+    if constexpr (!Rolling::is_krijt) {
+      if (neck)
+        rolling_.surfacesClose(sidata, i, j);
+      else
+        rolling_.surfacesIntersect(sidata, i, j);
     }
   }
 
-  // Motion of the contact that sliding, rolling and twisting need.
+  // Overlap, lever arms to the middle of the overlap and speed of separation, as LIGGGHTS' surface model defines them.
+  static void approach(Data& sidata, const Vec3& en, ContactRecord& record) {
+    const Vec3 velocity = load(sidata.v_i) - load(sidata.v_j);
+    sidata.deltan = sidata.radsum - sidata.r;
+    sidata.cri = sidata.radi - 0.5 * sidata.deltan;
+    sidata.crj = sidata.is_wall ? 0.0 : sidata.radj - 0.5 * sidata.deltan;
+    sidata.vn = dot(velocity, en);
+    record.center_velocity = velocity - sidata.vn * en;
+  }
+
+  // Motion of the contact that sliding, rolling and twisting need. A wall does not turn and has no curvature.
   void follow(const Data& sidata, const Vec3& en, ContactRecord& record) const {
     const Vec3 spin_i = load(sidata.omega_i);
+    const Vec3 spin_j = sidata.is_wall ? Vec3{0.0, 0.0, 0.0} : load(sidata.omega_j);
     const double dt = simulator_.update->dt;
     record.pull_off_force_original = pull_off_force_original(record.pair);
     record.normal_i_to_j = -en;
-    record.slip_velocity = {sidata.vtr1, sidata.vtr2, sidata.vtr3};
-    record.turn.normal = en;
-    const double inertia_i = 0.4 * sidata.mi * sidata.radi * sidata.radi;
-    if (sidata.is_wall) {
-      record.relative_spin = spin_i;
-      record.size_asymmetry = 1.0;
-      record.reduced_inertia = inertia_i;
-      record.turn.normal_change = {0.0, 0.0, 0.0};
-      record.turn.spin_angle = 0.5 * dt * dot(spin_i, en);
-      return;
-    }
-    const Vec3 spin_j = load(sidata.omega_j);
+    record.slip_velocity = record.center_velocity + cross(en, sidata.cri * spin_i + sidata.crj * spin_j);
     record.relative_spin = spin_i - spin_j;
-    record.size_asymmetry = (sidata.radj - sidata.radi) / sidata.radsum;
+    record.size_asymmetry = sidata.is_wall ? 1.0 : (sidata.radj - sidata.radi) / sidata.radsum;
+    const double turn_rate = sidata.is_wall ? 0.0 : dt * sidata.rinv;
+    record.turn = turn_of(en, turn_rate * record.center_velocity, 0.5 * dt * dot(spin_i + spin_j, en));
+    if constexpr (Rolling::is_krijt) {
+      if (rolling_.needs_inertia()) record.reduced_inertia = reduced_inertia(sidata);
+    }
+  }
+
+  static double reduced_inertia(const Data& sidata) {
+    const double inertia_i = 0.4 * sidata.mi * sidata.radi * sidata.radi;
     const double inertia_j = 0.4 * sidata.mj * sidata.radj * sidata.radj;
-    // a frozen partner does not turn: LIGGGHTS says so by handing over the other's mass as the effective one
-    record.reduced_inertia = sidata.meff == sidata.mi   ? inertia_i
-                             : sidata.meff == sidata.mj ? inertia_j
-                                                        : inertia_i * inertia_j / (inertia_i + inertia_j);
-    record.turn.normal_change =
-        (dt * sidata.rinv) * tangential_part(load(sidata.v_i) - load(sidata.v_j), en);
-    record.turn.spin_angle = 0.5 * dt * dot(spin_i + spin_j, en);
+    // a wall, or a frozen partner, does not turn: the effective mass is then the mass of the other
+    if (sidata.is_wall || sidata.meff == sidata.mi) return inertia_i;
+    if (sidata.meff == sidata.mj) return inertia_j;
+    return inertia_i * inertia_j / (inertia_i + inertia_j);
   }
 
   static void add_force(const Vec3& force, const Data& sidata, Forces& i, Forces& j) {

@@ -20,9 +20,10 @@ struct ContactRecord {
   double pull_off_force_original;
   Vec3 normal_i_to_j;
   Vec3 relative_spin;        // omega_i - omega_j; wall: omega_i
+  Vec3 center_velocity;      // of i past j, tangential
   Vec3 slip_velocity;        // u_i - u_j at the contact
   double size_asymmetry;     // (r_j - r_i)/(r_j + r_i); wall: 1
-  double reduced_inertia;    // 1/I_r = 1/I_i + 1/I_j
+  double reduced_inertia;    // 1/I_r = 1/I_i + 1/I_j; filled where rolling is damped
   Turn turn;
 };
 

@@ -16,6 +16,7 @@ namespace pyjkr {
 class RollingModelKrijt {
  public:
   static constexpr bool is_krijt = true;
+  static constexpr bool is_off = false;
 
   RollingModelKrijt(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* history, LIGGGHTS::ContactModels::ContactModelBase*)
       : lmp_(lmp) {
@@ -37,6 +38,7 @@ class RollingModelKrijt {
   }
 
   bool needs_friction() const { return twisting_; }
+  bool needs_inertia() const { return rolling_damping_ != 0.0; }
 
   void forget(double* history) const {
     history[slot_] = history[slot_ + 1] = history[slot_ + 2] = 0.0;

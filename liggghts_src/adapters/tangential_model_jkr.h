@@ -13,6 +13,7 @@ namespace pyjkr {
 class TangentialModelJkr {
  public:
   static constexpr bool is_jkr = true;
+  static constexpr bool is_off = false;
 
   TangentialModelJkr(LAMMPS_NS::LAMMPS*, LIGGGHTS::IContactHistorySetup* history, LIGGGHTS::ContactModels::ContactModelBase*) {
     // the displacement of i past j: changes sign where i and j change places

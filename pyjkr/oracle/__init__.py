@@ -1,4 +1,5 @@
-"""Adhesive contact by other means than the plug-in: bracketed roots and adaptive integration, written from the papers alone."""
+"""Adhesive contact by other means than the plug-in: bracketed roots and adaptive integration, written from the papers
+alone."""
 
 from .assembly import Trajectory, follow
 from .bodies import Assembly, Wall, pair_table

@@ -14,7 +14,8 @@ from .loads import History, Options, PairLaw, Pairs, no_history, pairs
 
 @dataclass(frozen=True)
 class Wall:
-    """A plane: any point of it [m], its normal towards the spheres, its velocity [m/s], and the type that names its laws."""
+    """A plane: any point of it [m], its normal towards the spheres, its velocity [m/s], and the type that names its
+    laws."""
 
     point: Sequence[float]
     normal: Sequence[float]
@@ -36,7 +37,8 @@ class Assembly:
     type : (N,), type of each sphere, default 1.
     external_force, external_torque : (N, 3), constant [N], [N m], default 0.
     inertia : (N,), [kg m2], default (2/5) m r^2.
-    touching : rows of `pair_table` in contact, with their `overlap` [m] and `history`; empty at the start of a new assembly.
+    touching : rows of `pair_table` in contact, with their `overlap` [m] and `history`; empty at the start of a new
+        assembly.
     time : [s].
     """
 
@@ -62,7 +64,9 @@ def pair_table(assembly: Assembly) -> Pairs:
     """Properties of all pairs of spheres, then of all spheres and walls."""
     count, walls = len(assembly.radius), len(assembly.walls)
     table = list(combinations(range(count), 2)) + list(product(range(count), range(count, count + walls)))
-    types = list(np.ones(count, dtype=int) if assembly.type is None else assembly.type) + [wall.type for wall in assembly.walls]
+    types = list(np.ones(count, dtype=int) if assembly.type is None else assembly.type) + [
+        wall.type for wall in assembly.walls
+    ]
     i, j = np.array(table, dtype=int).reshape(-1, 2).T
 
     def law(a: int, b: int) -> PairLaw:
@@ -77,5 +81,7 @@ def pair_table(assembly: Assembly) -> Pairs:
 def bodies(assembly: Assembly) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Radius [m], mass [kg] and moment of inertia [kg m2] of the spheres, then of the walls (infinite)."""
     rigid = np.full(len(assembly.walls), np.inf)
-    inertia = 0.4 * np.asarray(assembly.mass) * np.square(assembly.radius) if assembly.inertia is None else assembly.inertia
+    inertia = (
+        0.4 * np.asarray(assembly.mass) * np.square(assembly.radius) if assembly.inertia is None else assembly.inertia
+    )
     return tuple(np.concatenate([value, rigid]) for value in (assembly.radius, assembly.mass, inertia))

@@ -1,11 +1,14 @@
 # Law: normal impact of two adhesive spheres, or of a sphere and a wall, as motion of one effective mass.
-# Covers: Haervig et al. 2017 eqs 3, 5, 8-13 and the bisection of section 5.2; Chen et al. 2019 eqs 5, 7; contact made at overlap 0.
+# Covers: Haervig et al. 2017 eqs 3, 5, 8-13 and the bisection of section 5.2; Chen et al. 2019 eqs 5, 7; contact
+#   made at overlap 0.
 # Assumes: central impact, no other force; broken at overlap 0 (simplified) or at the rupture of the neck (full).
 """One-dimensional impacts to near round-off.
 
-The laws have branch points in time: damping goes as overlap^(1/4) at the make (simplified), da/d(overlap) diverges at the rupture (full).
+The laws have branch points in time: damping goes as overlap^(1/4) at the make (simplified), da/d(overlap) diverges at
+the rupture (full).
 Both vanish when q replaces the overlap x and theta the time:
-    simplified  x = q^4,  dt/dtheta = 4 q^3;      full  u = c + q (normal.py),  dt/dtheta = dx/dq;      in both  dq/dtheta = dx/dt.
+    simplified  x = q^4,  dt/dtheta = 4 q^3;      full  u = c + q (normal.py),  dt/dtheta = dx/dq;      in both
+    dq/dtheta = dx/dt.
 The right-hand sides are then smooth in q and the contact ends where q falls through 0, at a finite rate.
 """
 
@@ -40,8 +43,10 @@ class Impact:
     stuck : whether the contact never ends.
     contact_time : [s], from make to break; nan if stuck.
     maximum_overlap : [m].
-    exit_energy : [J], kinetic energy at the break; if stuck, minus the energy that was missing at the first turning point.
-    time, overlap, velocity : [s], [m], [m/s], the trajectory, from the make to the break or through a few oscillations if stuck.
+    exit_energy : [J], kinetic energy at the break; if stuck, minus the energy that was missing at the first turning
+        point.
+    time, overlap, velocity : [s], [m], [m/s], the trajectory, from the make to the break or through a few
+        oscillations if stuck.
         velocity is d(overlap)/dt, positive on approach.
     """
 
@@ -59,7 +64,8 @@ class Impact:
 
 @dataclass(frozen=True)
 class _Units:
-    """Scales of one impact: contact radius a_1, length a_1^2/R, force E a_1^3/(3 R), time sqrt(m length/force); eps as in normal.py."""
+    """Scales of one impact: contact radius a_1, length a_1^2/R, force E a_1^3/(3 R), time sqrt(m length/force); eps
+    as in normal.py."""
 
     length: float
     time: float
@@ -71,12 +77,26 @@ class _Units:
 
 
 def _units(contact: NormalContact, effective_mass: float, speed: float) -> _Units:
-    radius, modulus, zero_load = contact.effective_radius, contact.effective_modulus, float(equilibrium_contact_radius(contact))
-    scale = max(zero_load, (3 * radius**2 * effective_mass * speed**2 / modulus) ** 0.2)  # a_0, or the a at which Hertz stops the mass
+    radius, modulus, zero_load = (
+        contact.effective_radius,
+        contact.effective_modulus,
+        float(equilibrium_contact_radius(contact)),
+    )
+    scale = max(
+        zero_load, (3 * radius**2 * effective_mass * speed**2 / modulus) ** 0.2
+    )  # a_0, or the a at which Hertz stops the mass
     length, force = scale**2 / radius, modulus * scale**3 / (3 * radius)
     ratio = (zero_load / scale) ** 0.5
     damping = 2 * 5**0.5 * float(damping_ratio(contact.restitution_coefficient))
-    return _Units(length, (effective_mass * length / force) ** 0.5, force * length, ratio**3, CRITICAL * ratio, damping, contact.model is Model.SIMPLIFIED)
+    return _Units(
+        length,
+        (effective_mass * length / force) ** 0.5,
+        force * length,
+        ratio**3,
+        CRITICAL * ratio,
+        damping,
+        contact.model is Model.SIMPLIFIED,
+    )
 
 
 def _overlap(units: _Units, q):
@@ -120,7 +140,8 @@ _turned.terminal, _turned.direction = True, 1
 
 
 def _exact_break(right_hand_side, state, step, tolerances):
-    """State where q = 0, by Newton on the length of a directly integrated last step: dense output is two orders less accurate."""
+    """State where q = 0, by Newton on the length of a directly integrated last step: dense output is two orders less
+    accurate."""
     for _ in range(3):
         end = solve_ivp(right_hand_side, (0.0, step), state, method="DOP853", first_step=step, **tolerances).y[:, -1]
         if end[1] == 0.0:
@@ -130,11 +151,18 @@ def _exact_break(right_hand_side, state, step, tolerances):
 
 
 def impact(
-    contact: NormalContact, effective_mass: float, speed: float, *, relative_tolerance: float = 1e-12, samples: int = 400, stuck_periods: float = 4.0
+    contact: NormalContact,
+    effective_mass: float,
+    speed: float,
+    *,
+    relative_tolerance: float = 1e-12,
+    samples: int = 400,
+    stuck_periods: float = 4.0,
 ) -> Impact:
     """Follow one impact from the make at overlap 0 to the break, or to the turning point that proves it stuck.
 
-    Stuck is decided by energy: damping only removes it, so a contact that turns back before its breaking overlap can never reach it.
+    Stuck is decided by energy: damping only removes it, so a contact that turns back before its breaking overlap can
+    never reach it.
 
     Parameters
     ----------
@@ -143,7 +171,8 @@ def impact(
     speed : [m/s], relative normal speed at the make, > 0.
     relative_tolerance : [-], of the integrator (DOP853 on scaled, regularised variables).
     samples : [-], points of the trajectory.
-    stuck_periods : [-], how many periods of the stuck oscillation the trajectory of a stuck contact shows after its turning point.
+    stuck_periods : [-], how many periods of the stuck oscillation the trajectory of a stuck contact shows after its
+        turning point.
 
     Returns
     -------
@@ -160,7 +189,15 @@ def impact(
     tolerances = {"rtol": max(relative_tolerance, 3e-14), "atol": max(0.01 * relative_tolerance, 1e-16)}
     start = 0.0 if units.simplified else (2 * units.eps / 3) ** (1 / 3) - units.critical  # overlap 0
     state = np.array([start, speed * units.time / units.length, 0.0])
-    run = solve_ivp(right_hand_side, (0.0, np.inf), state, method="DOP853", dense_output=True, events=(_broken, _deepest, _turned), **tolerances)
+    run = solve_ivp(
+        right_hand_side,
+        (0.0, np.inf),
+        state,
+        method="DOP853",
+        dense_output=True,
+        events=(_broken, _deepest, _turned),
+        **tolerances,
+    )
     # Without damping energy decides alone: no accumulated error may stick a slow contact of the simplified law.
     barrier = float(stored_energy(contact, rupture_overlap(contact)))
     elastic_exit = 0.5 * effective_mass * speed**2 - barrier
@@ -172,10 +209,16 @@ def impact(
         pieces.append(_stuck_piece(right_hand_side, units, contact, effective_mass, end, stuck_periods, tolerances))
         rebound_speed, contact_time = 0.0, np.nan
     else:
-        end = run.y[:, -1] if len(run.t_events[0]) == 0 else _exact_break(right_hand_side, run.y[:, -2], run.t[-1] - run.t[-2], tolerances)
+        end = (
+            run.y[:, -1]
+            if len(run.t_events[0]) == 0
+            else _exact_break(right_hand_side, run.y[:, -2], run.t[-1] - run.t[-2], tolerances)
+        )
         exit_energy = elastic_exit if units.damping == 0 else 0.5 * units.energy * end[1] ** 2
         rebound_speed, contact_time = (2 * exit_energy / effective_mass) ** 0.5, float(end[2]) * units.time
-    q, velocity, time = np.concatenate([piece(np.linspace(0, length, samples // len(pieces))) for piece, length in pieces], axis=1)
+    q, velocity, time = np.concatenate(
+        [piece(np.linspace(0, length, samples // len(pieces))) for piece, length in pieces], axis=1
+    )
     return Impact(
         speed=speed,
         rebound_speed=float(rebound_speed),
@@ -192,18 +235,23 @@ def impact(
 
 def _stuck_piece(right_hand_side, units, contact, effective_mass, state, periods, tolerances):
     """(dense output, its length) of the oscillation that follows the turning point."""
-    period = 2 * np.pi * (effective_mass / (1.2 * contact.effective_modulus * equilibrium_contact_radius(contact))) ** 0.5
+    period = (
+        2 * np.pi * (effective_mass / (1.2 * contact.effective_modulus * equilibrium_contact_radius(contact))) ** 0.5
+    )
 
     def late(theta, y):
         return y[2] - state[2] - periods * period / units.time
 
     late.terminal = True
-    run = solve_ivp(right_hand_side, (0.0, np.inf), state, method="DOP853", dense_output=True, events=late, **tolerances)
+    run = solve_ivp(
+        right_hand_side, (0.0, np.inf), state, method="DOP853", dense_output=True, events=late, **tolerances
+    )
     return run.sol, run.t[-1]
 
 
 def sticking_speed(contact: NormalContact, effective_mass: float, *, relative_tolerance: float = 1e-11) -> float:
-    """Impact speed [m/s] below which the contact sticks, Haervig 2017 section 5.2 (by root finding on the energy left at the exit).
+    """Impact speed [m/s] below which the contact sticks, Haervig 2017 section 5.2 (by root finding on the energy left
+    at the exit).
 
     Parameters
     ----------
@@ -218,10 +266,27 @@ def sticking_speed(contact: NormalContact, effective_mass: float, *, relative_to
     simplified = contact.model is Model.SIMPLIFIED
     if contact.surface_energy == 0 or (simplified and contact.restitution_coefficient == 1):
         return 0.0
-    unit = float((pull_off_force(contact) * equilibrium_contact_radius(contact) ** 2 / (contact.effective_radius * effective_mass)) ** 0.5)
+    unit = float(
+        (
+            pull_off_force(contact)
+            * equilibrium_contact_radius(contact) ** 2
+            / (contact.effective_radius * effective_mass)
+        )
+        ** 0.5
+    )
 
     def margin(speed: float) -> float:
-        return impact(contact, effective_mass, speed, relative_tolerance=0.1 * relative_tolerance, samples=2, stuck_periods=0.01).exit_energy / speed
+        return (
+            impact(
+                contact,
+                effective_mass,
+                speed,
+                relative_tolerance=0.1 * relative_tolerance,
+                samples=2,
+                stuck_periods=0.01,
+            ).exit_energy
+            / speed
+        )
 
     lower = upper = 0.7 * unit
     while margin(lower) > 0:

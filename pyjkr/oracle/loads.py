@@ -1,6 +1,8 @@
 # Law: all loads of all contacts of an assembly at one instant, and the rates of their history vectors.
-# Covers: Haervig et al. 2017 eqs 5-6, 8-22; Chen et al. 2019 eqs 1-3, 11-12 (which terms take original values: sections 2.3 and 3.2 of the papers).
-# Assumes: a wall is a body of infinite radius, mass and inertia that does not turn; history turns with n and with the pair's mean spin about it.
+# Covers: Haervig et al. 2017 eqs 5-6, 8-22; Chen et al. 2019 eqs 1-3, 11-12 (which terms take original values:
+#   sections 2.3 and 3.2 of the papers).
+# Assumes: a wall is a body of infinite radius, mass and inertia that does not turn; history turns with n and with
+#   the pair's mean spin about it.
 """From positions, motion and history of the touching pairs to forces, moments and history rates."""
 
 from dataclasses import dataclass, replace
@@ -15,6 +17,7 @@ from .normal import (
     damping_coefficient,
     elastic_force,
     equilibrium_contact_radius,
+    indentation,
     pull_off_force,
 )
 from .twisting import twisting, twisting_rate
@@ -30,7 +33,8 @@ class PairLaw:
     effective_modulus, effective_shear_modulus : [Pa], as used in the contact law (reduced, where stiffness is reduced).
     surface_energy : [J/m2], of the normal law.
     restitution_coefficient, friction_coefficient : [-].
-    adhesion_hysteresis : [-], dgamma/gamma of Krijt; or critical_rolling_angle : [rad]. With rolling exactly one of the two.
+    adhesion_hysteresis : [-], dgamma/gamma of Krijt; or critical_rolling_angle : [rad]. With rolling exactly one of
+        the two.
     surface_energy_original : [J/m2], for sliding, twisting and rolling; default surface_energy.
     effective_modulus_original : [Pa], for a_0 in the rolling and twisting limits; default effective_modulus.
     """
@@ -61,7 +65,8 @@ class Options:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Properties of pairs, one row each; `j` counts walls after the spheres. Units as in PairLaw; radius_j is infinite at a wall."""
+    """Properties of pairs, one row each; `j` counts walls after the spheres. Units as in PairLaw; radius_j is
+    infinite at a wall."""
 
     i: np.ndarray
     j: np.ndarray
@@ -85,20 +90,33 @@ class Pairs:
 
 
 def pairs(i, j, radius, mass, inertia, laws: list[PairLaw], options: Options) -> Pairs:
-    """Gather the properties of pairs of bodies i, j (indices) from the bodies' radius [m], mass [kg], inertia [kg m2] and one law per pair.
+    """Gather the properties of pairs of bodies i, j (indices) from the bodies' radius [m], mass [kg], inertia [kg m2]
+    and one law per pair.
 
     Raises
     ------
-    ValueError : if rolling has no or two critical displacements, or a Hertz contact is asked to slide with a dashpot.
+    ValueError : if rolling has no or two critical displacements.
     """
 
     def column(name: str, default: str | None = None) -> np.ndarray:
         values = [getattr(law, name) for law in laws]
-        return np.array([getattr(law, default) if value is None and default else value for law, value in zip(laws, values)], dtype=float)
+        return np.array(
+            [
+                getattr(law, default) if value is None and default else value
+                for law, value in zip(laws, values, strict=True)
+            ],
+            dtype=float,
+        )
 
     r_i, r_j = radius[i], radius[j]
     effective_radius = 1 / (1 / r_i + 1 / r_j)
-    contact = NormalContact(effective_radius, column("effective_modulus"), column("surface_energy"), options.model, column("restitution_coefficient"))
+    contact = NormalContact(
+        effective_radius,
+        column("effective_modulus"),
+        column("surface_energy"),
+        options.model,
+        column("restitution_coefficient"),
+    )
     original = replace(
         contact,
         effective_modulus=column("effective_modulus_original", "effective_modulus"),
@@ -108,13 +126,10 @@ def pairs(i, j, radius, mass, inertia, laws: list[PairLaw], options: Options) ->
     hysteresis, angle = column("adhesion_hysteresis"), column("critical_rolling_angle")
     if options.rolling and np.any(np.isnan(hysteresis) == np.isnan(angle)):
         raise ValueError("rolling needs exactly one of adhesion_hysteresis and critical_rolling_angle in every law")
-    sticky = (contact.surface_energy > 0) | (column("friction_coefficient") == 0) | (contact.restitution_coefficient == 1)
-    if options.sliding and options.tangential_damping and not np.all(sticky):
-        raise ValueError(
-            "sliding with a dashpot needs surface_energy > 0: at the make of a Hertz contact the limit is 0 and the reset spring unbounded. "
-            "Set tangential_damping=False, or a small surface_energy."
-        )
-    krijt, chen = rolling.critical_displacement_krijt(original_zero_load, hysteresis), rolling.critical_displacement_angle(effective_radius, angle)
+    krijt, chen = (
+        rolling.critical_displacement_krijt(original_zero_load, hysteresis),
+        rolling.critical_displacement_angle(effective_radius, angle),
+    )
     return Pairs(
         i=i,
         j=j,
@@ -126,14 +141,17 @@ def pairs(i, j, radius, mass, inertia, laws: list[PairLaw], options: Options) ->
         effective_shear_modulus=column("effective_shear_modulus"),
         friction_coefficient=column("friction_coefficient"),
         original_pull_off_force=pull_off_force(original),
-        original_radius_ratio=np.where(zero_load > 0, original_zero_load / np.where(zero_load > 0, zero_load, 1.0), 1.0),
+        original_radius_ratio=np.where(
+            zero_load > 0, original_zero_load / np.where(zero_load > 0, zero_load, 1.0), 1.0
+        ),
         critical_displacement=np.where(np.isnan(hysteresis), chen, krijt),
     )
 
 
 @dataclass(frozen=True)
 class Geometry:
-    """Where the touching pairs are: unit vector n from i to j, overlap [m], distance of the centres [m] (infinite at a wall)."""
+    """Where the touching pairs are: unit vector n from i to j, overlap [m], distance of the centres [m] (infinite at
+    a wall)."""
 
     normal: np.ndarray
     overlap: np.ndarray
@@ -142,7 +160,8 @@ class Geometry:
 
 @dataclass(frozen=True)
 class History:
-    """Sliding and rolling displacement [m], twisting angle [rad] (vectors on the last axis) and which of the three are at their limit."""
+    """Sliding and rolling displacement [m], twisting angle [rad] (vectors on the last axis) and which of the three
+    are at their limit."""
 
     slip: np.ndarray
     roll: np.ndarray
@@ -164,9 +183,11 @@ def no_history(count: int) -> History:
 
 @dataclass(frozen=True)
 class Loads:
-    """Force and torque on every body [N], [N m]; d/dt of the history; and, per contact and slider, how far beyond its limit (> 0 is beyond).
+    """Force and torque on every body [N], [N m]; d/dt of the history; and, per contact and slider, how far beyond its
+    limit (> 0 is beyond).
 
-    `sliding_excess`, `twisting_excess`, `rolling_excess` are load/limit - 1 where a slider sticks, and -lambda where it slips.
+    `sliding_excess`, `twisting_excess`, `rolling_excess` are spring/limit - 1 where a spring holds, and -lambda where
+    it yields.
     """
 
     force: np.ndarray
@@ -182,7 +203,19 @@ class Loads:
     history: History
 
 
-def loads(touching: Pairs, options: Options, geometry: Geometry, history: History, velocity, spin, external, torque, mass, inertia, reset=False) -> Loads:
+def loads(
+    touching: Pairs,
+    options: Options,
+    geometry: Geometry,
+    history: History,
+    velocity,
+    spin,
+    external,
+    torque,
+    mass,
+    inertia,
+    reset=False,
+) -> Loads:
     """Loads of all touching pairs on all bodies.
 
     Parameters
@@ -190,7 +223,7 @@ def loads(touching: Pairs, options: Options, geometry: Geometry, history: Histor
     touching, options, geometry, history : the pairs in contact.
     velocity, spin, external, torque : of every body [m/s], [rad/s], [N], [N m]; the walls last.
     mass, inertia : of every body [kg], [kg m2], infinite for walls.
-    reset : whether to work out the history with its sliders reset to their limits (return mapping), for a contact that changes mode.
+    reset : whether to work out the history with its springs cut back to their limits, for a contact that changes mode.
 
     Returns
     -------
@@ -200,26 +233,41 @@ def loads(touching: Pairs, options: Options, geometry: Geometry, history: Histor
     v_i, v_j, w_i, w_j = velocity[i], velocity[j], spin[i], spin[j]
     shrink = 0.5 * overlap if options.lever_arm == "contact" else 0.0 * overlap
     wall = np.isinf(p.radius_j)
-    arm_i, arm_j = (p.radius_i - shrink)[:, None], np.where(wall, 0.0, np.where(wall, 0.0, p.radius_j) - shrink)[:, None]
+    arm_i, arm_j = (
+        (p.radius_i - shrink)[:, None],
+        np.where(wall, 0.0, np.where(wall, 0.0, p.radius_j) - shrink)[:, None],
+    )
 
     overlap_rate = dot(v_i - v_j, n)[:, 0]
     normal_rate = ((v_j - v_i) + n * overlap_rate[:, None]) / geometry.distance[:, None]
     frame = cross(n, normal_rate) + 0.5 * n * dot(w_i + w_j, n)
     slip_velocity = tangential.slip_velocity(v_i, v_j, w_i, w_j, arm_i, arm_j, n)
 
-    elastic = elastic_force(p.contact, overlap)
-    normal_force = elastic + damping_coefficient(p.contact, overlap, p.effective_mass) * overlap_rate
+    indented = indentation(p.contact, overlap)
+    elastic = elastic_force(p.contact, indented)
+    normal_force = elastic + damping_coefficient(p.contact, indented, p.effective_mass) * overlap_rate
     on_i, moment = -n * normal_force[:, None], np.zeros_like(n)
     flat = np.zeros(len(overlap))
 
-    slip, resisting = history.slip - n * dot(history.slip, n), np.zeros_like(n)  # n . slip is 0 up to the integrator's error
-    if options.sliding or options.twisting:  # twisting takes k_T, eta_T and F_S,crit from sliding, whether or not the contact resists sliding
+    slip, resisting = (
+        history.slip - n * dot(history.slip, n),
+        np.zeros_like(n),
+    )  # n . slip is 0 up to the integrator's error
+    if (
+        options.sliding or options.twisting
+    ):  # twisting takes k_T, eta_T and F_S,crit from sliding, whether or not the contact resists sliding
         slider = tangential.sliding(
-            p.contact, p.effective_shear_modulus, p.friction_coefficient, p.original_pull_off_force, p.effective_mass, overlap, options.tangential_damping,
+            p.contact,
+            p.effective_shear_modulus,
+            p.friction_coefficient,
+            p.original_pull_off_force,
+            p.effective_mass,
+            indented,
+            options.tangential_damping,
             slopes=bool(history.slipping.any() or history.spinning.any()),
         )
     if options.sliding:
-        resisting = tangential.resistance(slider, slip, slip_velocity, history.slipping | (slider.limit <= 0))
+        resisting = tangential.resistance(slider, slip, slip_velocity, history.slipping)
         on_i = on_i - resisting
 
     roll, roll_velocity, yield_rate, roll_length = history.roll - n * dot(history.roll, n), np.zeros_like(n), flat, flat
@@ -230,17 +278,19 @@ def loads(touching: Pairs, options: Options, geometry: Geometry, history: Histor
         yield_rate = dot(outward, roll_velocity)[:, 0]
         held = np.where(history.yielding[:, None], p.critical_displacement[:, None] * outward, roll)
         zero_load = equilibrium_contact_radius(p.contact)
-        ratio = contact_radius(p.contact, overlap) / np.where(zero_load > 0, zero_load, np.inf)
+        ratio = contact_radius(p.contact, indented) / np.where(zero_load > 0, zero_load, np.inf)
         stiffness = rolling.rolling_stiffness(p.original_pull_off_force, ratio)
-        dashpot = rolling.rolling_damping(options.rolling_damping, stiffness, p.reduced_inertia, p.contact.effective_radius)
+        dashpot = rolling.rolling_damping(
+            options.rolling_damping, stiffness, p.reduced_inertia, p.contact.effective_radius
+        )
         moment = moment + rolling.rolling_moment(stiffness, dashpot, held, roll_velocity, n)
         roll_velocity = roll_velocity - np.where(history.yielding[:, None], outward * yield_rate[:, None], 0.0)
 
     twist_velocity = np.zeros_like(history.twist)
     if options.twisting:
-        slider_twist = twisting(p.contact, slider, overlap, p.original_radius_ratio)
+        slider_twist = twisting(p.contact, slider, indented, p.original_radius_ratio)
         twist_velocity = twisting_rate(w_i, w_j, n)
-        moment = moment - n * tangential.resistance(slider_twist, history.twist, twist_velocity, history.spinning | (slider_twist.limit <= 0))
+        moment = moment - n * tangential.resistance(slider_twist, history.twist, twist_velocity, history.spinning)
 
     force, total_torque = external.copy(), torque.copy()
     np.add.at(force, i, on_i)
@@ -248,36 +298,24 @@ def loads(touching: Pairs, options: Options, geometry: Geometry, history: Histor
     np.add.at(total_torque, i, arm_i * cross(n, -resisting) + moment)
     np.add.at(total_torque, j, arm_j * cross(n, -resisting) - moment)
 
-    # Where a slider slips: its multiplier, from the accelerations that the loads above give.
-    acceleration, angular = force / mass[:, None], total_torque / inertia[:, None]
     sliding_excess, slip_rate = flat - 1, slip_velocity
     if options.sliding:
-        multiplier, arguments = flat, (slider, slip, slip_velocity)
-        if history.slipping.any():
-            arms_rate = -0.5 * overlap_rate[:, None] if options.lever_arm == "contact" else 0.0
-            arms_spin, arms_angular = arm_i * w_i + arm_j * w_j, arm_i * angular[i] + arm_j * angular[j]
-            u = v_i - v_j + cross(arms_spin, n)
-            u_rate = acceleration[i] - acceleration[j] + cross(arms_angular + arms_rate * (w_i + w_j), n) + cross(arms_spin, normal_rate)
-            slip_acceleration = u_rate - n * dot(n, u_rate) - normal_rate * dot(n, u) - n * dot(normal_rate, u) - cross(frame, slip_velocity)
-            multiplier = tangential.slip_rate(*arguments, slip_acceleration, overlap_rate)
-            slip_rate = slip_velocity - np.where(history.slipping[:, None], multiplier[:, None] * tangential.slip_direction(*arguments), 0.0)
-        sliding_excess = _excess(tangential.resistance(*arguments, False), slider.limit, history.slipping, multiplier)
+        slip_rate, sliding_excess = _flow(slider, slip, slip_velocity, overlap_rate, history.slipping)
     twisting_excess, twist_rate = flat - 1, twist_velocity
     if options.twisting:
-        multiplier, arguments = flat, (slider_twist, history.twist, twist_velocity)
-        if history.spinning.any():
-            twist_acceleration = dot(angular[i] - angular[j], n) + dot(w_i - w_j, normal_rate)
-            multiplier = tangential.slip_rate(*arguments, twist_acceleration, overlap_rate)
-            twist_rate = twist_velocity - np.where(history.spinning[:, None], multiplier[:, None] * tangential.slip_direction(*arguments), 0.0)
-        twisting_excess = _excess(tangential.resistance(*arguments, False), slider_twist.limit, history.spinning, multiplier)
+        twist_rate, twisting_excess = _flow(slider_twist, history.twist, twist_velocity, overlap_rate, history.spinning)
     rolling_excess = flat - 1
     if options.rolling:
         critical = np.where(p.critical_displacement > 0, p.critical_displacement, np.inf)
         rolling_excess = np.where(history.yielding, -yield_rate, roll_length / critical - 1)
     limited = History(
-        slip=tangential.returned_displacement(slider, slip, slip_velocity) if reset and options.sliding else history.slip,
-        roll=rolling.truncated_displacement(roll, p.critical_displacement) if reset and options.rolling else history.roll,
-        twist=tangential.returned_displacement(slider_twist, history.twist, twist_velocity) if reset and options.twisting else history.twist,
+        slip=tangential.returned_displacement(slider, slip) if reset and options.sliding else history.slip,
+        roll=rolling.truncated_displacement(roll, p.critical_displacement)
+        if reset and options.rolling
+        else history.roll,
+        twist=tangential.returned_displacement(slider_twist, history.twist)
+        if reset and options.twisting
+        else history.twist,
         slipping=history.slipping,
         yielding=history.yielding,
         spinning=history.spinning,
@@ -297,7 +335,13 @@ def loads(touching: Pairs, options: Options, geometry: Geometry, history: Histor
     )
 
 
-def _excess(trial: np.ndarray, limit: np.ndarray, slipping: np.ndarray, multiplier: np.ndarray) -> np.ndarray:
-    length = np.linalg.norm(trial, axis=-1)
-    sticking = np.where(limit > 0, length / np.where(limit > 0, limit, 1.0) - 1, -1.0)  # no limit, no load: nothing to reset
-    return np.where(slipping, -multiplier, sticking)
+def _flow(slider: tangential.Slider, displacement, velocity, overlap_rate, yielding) -> tuple[np.ndarray, np.ndarray]:
+    """Rate of a spring, and how far beyond its limit it is, or how far from holding again."""
+    load = slider.stiffness * np.sqrt(dot(displacement, displacement))[:, 0]
+    excess = np.where(
+        slider.limit > 0, load / np.where(slider.limit > 0, slider.limit, 1.0) - 1, -1.0
+    )  # no limit, no load
+    if not yielding.any():
+        return velocity, excess
+    rate = np.where(yielding[:, None], tangential.plastic_rate(slider, displacement, velocity, overlap_rate), velocity)
+    return rate, np.where(yielding, -tangential.slip_rate(slider, displacement, velocity, overlap_rate), excess)

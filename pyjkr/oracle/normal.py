@@ -1,10 +1,13 @@
 # Law: adhesive normal contact of two elastic spheres, simplified JKR (`jkr/simplified`) and full JKR (`jkr`).
-# Covers: Haervig et al. 2017 section 2.1, eqs 2, 7-13 with eq. 11 as 2 sqrt(5/6) (the printed 2 (5/6) does not return e); Chen et al. 2019 eqs 1a, 6.
-# Assumes: small strain, like surfaces (work of adhesion 2 gamma), repulsive forces positive. The contact radius is a bracketed root.
+# Covers: Haervig et al. 2017 section 2.1, eqs 2, 7-13 with eq. 11 as 2 sqrt(5/6) (the printed 2 (5/6) does not
+#   return e); Chen et al. 2019 eqs 1a, 6.
+# Assumes: small strain, like surfaces (work of adhesion 2 gamma), repulsive forces positive. The contact radius is a
+#   bracketed root.
 """Normal force of an adhesive contact.
 
 Every function works in the scaled contact radius u = sqrt(a / a_1) with a_1 = max(a_0, sqrt(R |overlap|)), where
-    overlap R / a_1^2 = u^4 - (2/3) eps u,   force / F_1 = 4 (u^6 - eps u^3),   F_1 = E a_1^3 / (3 R),   eps = (a_0 / a_1)^(3/2),
+    overlap R / a_1^2 = u^4 - (2/3) eps u,   force / F_1 = 4 (u^6 - eps u^3),   F_1 = E a_1^3 / (3 R),   eps = (a_0 /
+    a_1)^(3/2),
 so that strongly adhesive contacts (eps = 1) and Hertz (eps = 0) share one form without overflow or special cases.
 """
 
@@ -17,6 +20,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 CRITICAL = 6.0 ** (-1.0 / 3.0)  # u at rupture over sqrt(a_0 / a_1): there d(overlap)/du = 4 u^3 - (2/3) eps = 0
+MANY = 8  # contacts from which the roots are cheaper all at once
 ROOT_TOLERANCE = 4.0 * np.finfo(float).eps  # the tightest that brentq accepts
 
 
@@ -56,7 +60,9 @@ class NormalContact:
             value = np.asarray(getattr(self, name), dtype=float)
             good = value >= 0 if name == "surface_energy" else value > 0
             if not np.all(good & np.isfinite(value)):
-                raise ValueError(f"{name} = {getattr(self, name)} must be finite and {'>= 0' if name == 'surface_energy' else '> 0'}")
+                raise ValueError(
+                    f"{name} = {getattr(self, name)} must be finite and {'>= 0' if name == 'surface_energy' else '> 0'}"
+                )
         if np.any(np.asarray(self.restitution_coefficient) > 1):
             raise ValueError(f"restitution_coefficient = {self.restitution_coefficient} must be <= 1")
 
@@ -66,7 +72,9 @@ def effective_radius(radius_i: ArrayLike, radius_j: ArrayLike) -> ArrayLike:
     return 1.0 / (1.0 / np.asarray(radius_i) + 1.0 / np.asarray(radius_j))
 
 
-def effective_modulus(youngs_modulus_i: float, poissons_ratio_i: float, youngs_modulus_j: float, poissons_ratio_j: float) -> float:
+def effective_modulus(
+    youngs_modulus_i: float, poissons_ratio_i: float, youngs_modulus_j: float, poissons_ratio_j: float
+) -> float:
     """Effective Young's modulus [Pa] of two bodies, Haervig 2017 eq. 2."""
     return 1.0 / ((1 - poissons_ratio_i**2) / youngs_modulus_i + (1 - poissons_ratio_j**2) / youngs_modulus_j)
 
@@ -93,7 +101,8 @@ def pull_off_force(contact: NormalContact) -> ArrayLike:
 
 
 def rupture_overlap(contact: NormalContact) -> ArrayLike:
-    """Overlap [m], <= 0, at which a separating contact ends: 0 (simplified) or -a_0^2/(2 6^(1/3) R) (full; Chen 2019 eq. 6)."""
+    """Overlap [m], <= 0, at which a separating contact ends: 0 (simplified) or -a_0^2/(2 6^(1/3) R) (full; Chen 2019
+    eq. 6)."""
     if contact.model is Model.SIMPLIFIED:
         return 0.0 * np.asarray(contact.effective_radius)
     return -(equilibrium_contact_radius(contact) ** 2) * CRITICAL / (2 * contact.effective_radius)
@@ -102,8 +111,8 @@ def rupture_overlap(contact: NormalContact) -> ArrayLike:
 def scaled_root(reach: float, critical: float) -> float:
     """Root w >= 0 of w sqrt(6 c^2 + 4 c w + w^2) = reach, bracketed; the scaled contact radius is then u = c + w.
 
-    With c = u at rupture, u^4 - (2/3) eps u + 3 c^4 = w^2 (6 c^2 + 4 c w + w^2): the double root at rupture is gone, the left side is
-    monotone and near rupture w is as well determined as the square root of the distance to it.
+    With c = u at rupture, u^4 - (2/3) eps u + 3 c^4 = w^2 (6 c^2 + 4 c w + w^2): the double root at rupture is gone,
+    the left side is monotone and near rupture w is as well determined as the square root of the distance to it.
     """
     if reach <= 0.0:
         return 0.0  # at rupture, or beyond it by the round-off or the trial step of an integrator
@@ -115,8 +124,48 @@ def scaled_root(reach: float, critical: float) -> float:
     return brentq(lambda w: w * sqrt(square + w * (linear + w)) - reach, lower, upper, xtol=1e-300, rtol=ROOT_TOLERANCE)
 
 
-def _scaled(contact: NormalContact, overlap: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def scaled_roots(reach: np.ndarray, critical: np.ndarray) -> np.ndarray:
+    """`scaled_root` of many contacts at once: Newton from the upper end of the bracket.
+
+    f(w) = w sqrt(6 c^2 + 4 c w + w^2) - reach grows and is convex, so the iterates fall monotonically to the root:
+    the bracket needs no keeping.
+    """
+    square, linear = 6.0 * critical * critical, 4.0 * critical
+    with np.errstate(divide="ignore", invalid="ignore"):
+        w = np.fmin(np.sqrt(reach), reach / np.sqrt(square))  # either term alone
+        for _ in range(60):
+            slope = np.sqrt(square + w * (linear + w))
+            step = (w * slope - reach) / (slope + w * (critical * 2 + w) / slope)
+            w = w - np.where(w > 0, step, 0.0)
+            if np.all(np.abs(step[w > 0]) <= ROOT_TOLERANCE * w[w > 0]):
+                break
+    return w
+
+
+@dataclass(frozen=True)
+class Indentation:
+    """An overlap [m] with its root solved, to be given in place of the overlap where several laws are asked at the
+    same one."""
+
+    overlap: np.ndarray
+    scaled: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
+
+def indentation(contact: NormalContact, overlap: ArrayLike) -> Indentation:
+    """Solve once for what every function below needs at this overlap [m]."""
+    return Indentation(np.asarray(overlap, dtype=float), _scaled(contact, overlap))
+
+
+def _overlap(overlap: ArrayLike | Indentation) -> ArrayLike:
+    return overlap.overlap if isinstance(overlap, Indentation) else overlap
+
+
+def _scaled(
+    contact: NormalContact, overlap: ArrayLike | Indentation
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """(a_1 [m], eps [-], c [-], w [-]) of the module's docstring and `scaled_root`."""
+    if isinstance(overlap, Indentation):
+        return overlap.scaled
     overlap, zero_load = np.asarray(overlap, dtype=float), equilibrium_contact_radius(contact)
     scale = np.maximum(zero_load, np.sqrt(contact.effective_radius * np.abs(overlap)))
     scale = np.where(scale == 0.0, contact.effective_radius, scale)  # Hertz at overlap 0: any length will do
@@ -126,7 +175,12 @@ def _scaled(contact: NormalContact, overlap: ArrayLike) -> tuple[np.ndarray, np.
     if reach.ndim == 0:
         return scale, root_ratio**3, critical, np.float64(scaled_root(float(reach), float(critical)))
     reach, critical = np.broadcast_arrays(reach, critical)
-    root = np.fromiter(map(scaled_root, reach.ravel().tolist(), critical.ravel().tolist()), float, reach.size).reshape(reach.shape)
+    if reach.size < MANY:
+        root = np.fromiter(
+            map(scaled_root, reach.ravel().tolist(), critical.ravel().tolist()), float, reach.size
+        ).reshape(reach.shape)
+    else:
+        root = scaled_roots(reach, critical)
     return scale, root_ratio**3, critical, root
 
 
@@ -152,7 +206,8 @@ def elastic_force(contact: NormalContact, overlap: ArrayLike) -> ArrayLike:
     Parameters
     ----------
     contact : properties of the contact.
-    overlap : [m], positive in compression. The simplified law is this same curve, cut at overlap 0 by whoever follows the contact.
+    overlap : [m], positive in compression. The simplified law is this same curve, cut at overlap 0 by whoever follows
+        the contact.
     """
     scale, eps, critical, root = _scaled(contact, overlap)
     cubed = (critical + root) ** 3
@@ -181,27 +236,31 @@ def _overlap_slope(critical: ArrayLike, root: ArrayLike) -> ArrayLike:
 
 
 def damping_coefficient(contact: NormalContact, overlap: ArrayLike, effective_mass: ArrayLike) -> ArrayLike:
-    """Coefficient eta_N [kg/s] of the damping force eta_N d(overlap)/dt, Haervig 2017 eqs 11-13 or Marshall 2009 (Chen 2019 eq. 1a).
+    """Coefficient eta_N [kg/s] of the damping force eta_N d(overlap)/dt, Haervig 2017 eqs 11-13 or Marshall 2009
+    (Chen 2019 eq. 1a).
 
-    Simplified: 2 sqrt(5/6) abs(beta) sqrt(S_n m), S_n = 2 E sqrt(R overlap). Full: sqrt(5) abs(beta) sqrt(m (4/3) E a), in the neck too.
+    Simplified: 2 sqrt(5/6) abs(beta) sqrt(S_n m), S_n = 2 E sqrt(R overlap). Full: sqrt(5) abs(beta) sqrt(m (4/3) E
+    a), in the neck too.
     For Hertz the two are the same number, and return the restitution coefficient exactly.
     """
     beta, modulus = damping_ratio(contact.restitution_coefficient), contact.effective_modulus
     if contact.model is Model.SIMPLIFIED:
-        stiffness = 2 * modulus * np.sqrt(contact.effective_radius * np.maximum(overlap, 0.0))
+        stiffness = 2 * modulus * np.sqrt(contact.effective_radius * np.maximum(_overlap(overlap), 0.0))
         return 2 * np.sqrt(5 / 6) * beta * np.sqrt(stiffness * effective_mass)
     return np.sqrt(5) * beta * np.sqrt(effective_mass * 4 / 3 * modulus * contact_radius(contact, overlap))
 
 
 def tangential_radius(contact: NormalContact, overlap: ArrayLike) -> ArrayLike:
-    """Length [m] that sets the tangential stiffness: sqrt(R overlap) (simplified, Haervig 2017 eq. 14) or a (full, Chen 2019 eq. 1b)."""
+    """Length [m] that sets the tangential stiffness: sqrt(R overlap) (simplified, Haervig 2017 eq. 14) or a (full,
+    Chen 2019 eq. 1b)."""
     if contact.model is Model.SIMPLIFIED:
-        return np.sqrt(contact.effective_radius * np.maximum(overlap, 0.0))
+        return np.sqrt(contact.effective_radius * np.maximum(_overlap(overlap), 0.0))
     return contact_radius(contact, overlap)
 
 
 def stored_energy(contact: NormalContact, overlap: ArrayLike) -> ArrayLike:
-    """Work [J] done against the elastic force since the contact formed at overlap 0; Haervig 2017 eq. 23 is its value at equilibrium."""
+    """Work [J] done against the elastic force since the contact formed at overlap 0; Haervig 2017 eq. 23 is its value
+    at equilibrium."""
     scale, eps, critical, root = _scaled(contact, overlap)
     energy = contact.effective_modulus * scale**5 / (3 * np.square(contact.effective_radius))
     return energy * (scaled_energy(critical + root, eps) - scaled_energy(np.cbrt(2 * eps / 3), eps))

@@ -1,9 +1,12 @@
 # Law: adhesive rolling resistance, an elastic-plastic spring (`rolling_friction krijt`), with an optional dashpot.
-# Covers: Haervig et al. 2017 section 2.2, eqs 18-22 (eq. 20 with its denominator and sign mended), section 3.2; Chen et al. 2019 eqs 1d, 3c, 11.
-# Assumes: only the spring is truncated, the dashpot adds to it; history rotated with the contact by the caller; normal from i to j.
+# Covers: Haervig et al. 2017 section 2.2, eqs 18-22 (eq. 20 with its denominator and sign mended), section 3.2; Chen
+#   et al. 2019 eqs 1d, 3c, 11.
+# Assumes: only the spring is truncated, the dashpot adds to it; history rotated with the contact by the caller;
+#   normal from i to j.
 """Rolling of a contact. Moment on i: n x (k_r xi + eta_R v_L), and the opposite on j.
 
-Sign: with v_L = -R (w_i - w_j) x n the power of both moments is k_r (w_i - w_j) . (n x xi) = -(k_r/R) xi . v_L: stored, then dissipated.
+Sign: with v_L = -R (w_i - w_j) x n the power of both moments is k_r (w_i - w_j) . (n x xi) = -(k_r/R) xi . v_L:
+stored, then dissipated.
 """
 
 import numpy as np
@@ -15,7 +18,8 @@ from .vectors import cross
 def rolling_velocity(radius_i, radius_j, spin_i, spin_j, normal, slip_velocity) -> np.ndarray:
     """Rolling velocity v_L [m/s]: of the contact point past the mean of both surfaces.
 
-    -R (w_i - w_j) x n + (1/2) (r_j - r_i)/(r_j + r_i) v_S, Haervig 2017 eq. 20 mended; an infinite radius_j is a wall: -r w_i x n + v_S/2.
+    -R (w_i - w_j) x n + (1/2) (r_j - r_i)/(r_j + r_i) v_S, Haervig 2017 eq. 20 mended; an infinite radius_j is a
+    wall: -r w_i x n + v_S/2.
 
     Parameters
     ----------
@@ -51,8 +55,11 @@ def critical_displacement_angle(effective_radius: ArrayLike, critical_rolling_an
     return np.asarray(effective_radius) * critical_rolling_angle
 
 
-def rolling_damping(damping_fraction: ArrayLike, stiffness: ArrayLike, reduced_inertia: ArrayLike, effective_radius: ArrayLike) -> ArrayLike:
-    """Dashpot eta_R = 2 x sqrt(k_r I_r/R) [kg m/s = N m per m/s]; 1/I_r = 1/I_i + 1/I_j [1/(kg m2)], x the fraction of critical."""
+def rolling_damping(
+    damping_fraction: ArrayLike, stiffness: ArrayLike, reduced_inertia: ArrayLike, effective_radius: ArrayLike
+) -> ArrayLike:
+    """Dashpot eta_R = 2 x sqrt(k_r I_r/R) [kg m/s = N m per m/s]; 1/I_r = 1/I_i + 1/I_j [1/(kg m2)], x the fraction
+    of critical."""
     return 2 * damping_fraction * np.sqrt(stiffness * reduced_inertia / effective_radius)
 
 

@@ -1,7 +1,9 @@
 # Law: twisting resistance about the contact normal, spring and dashpot with a limit (`krijt` with `twisting on`).
-# Covers: Chen et al. 2019 eqs 1c, 3b (Marshall 2009 eqs 32-33): stiffness k_T a^2/2, dashpot eta_T a^2/2, limit (2/3) a F_S,crit.
+# Covers: Chen et al. 2019 eqs 1c, 3b (Marshall 2009 eqs 32-33): stiffness k_T a^2/2, dashpot eta_T a^2/2, limit
+#   (2/3) a F_S,crit.
 # Assumes: the slider of tangential.py, in the angle about the normal; a is the JKR contact radius in both models.
-"""Twisting of a contact. Moment on i: -f n, and the opposite on j; f = stiffness angle + dashpot rate, truncated as sliding is."""
+"""Twisting of a contact. Moment on i: -f n, and the opposite on j; f = stiffness angle + dashpot rate, yielding and
+capped as sliding is."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +13,9 @@ from .tangential import Slider
 from .vectors import dot
 
 
-def twisting(contact: NormalContact, sliding: Slider, overlap: ArrayLike, original_radius_ratio: ArrayLike = 1.0) -> Slider:
+def twisting(
+    contact: NormalContact, sliding: Slider, overlap: ArrayLike, original_radius_ratio: ArrayLike = 1.0
+) -> Slider:
     """Spring, dashpot and limit of twisting [N m/rad, N m s/rad, N m] at one overlap.
 
     Parameters
@@ -32,7 +36,6 @@ def twisting(contact: NormalContact, sliding: Slider, overlap: ArrayLike, origin
         dashpot=sliding.dashpot * polar,
         limit=sliding.limit * arm,
         stiffness_slope=sliding.stiffness_slope * polar + sliding.stiffness * polar_slope,
-        dashpot_slope=sliding.dashpot_slope * polar + sliding.dashpot * polar_slope,
         limit_slope=sliding.limit_slope * arm + sliding.limit * arm_slope,
     )
 

@@ -1,6 +1,7 @@
 """Normal law of the oracle against closed-form constants.
 
-Constants marked [mpmath] were computed to 30 digits from the closed forms of Johnson, Kendall, Roberts in the units F_C, a_0^2/R, a_0.
+Constants marked [mpmath] were computed to 30 digits from the closed forms of Johnson, Kendall, Roberts in the units
+F_C, a_0^2/R, a_0.
 """
 
 import mpmath
@@ -26,6 +27,7 @@ from pyjkr.oracle import (
     rupture_overlap,
     stored_energy,
 )
+from pyjkr.oracle.normal import scaled_root, scaled_roots
 
 ROUND_OFF = 1e-13  # of max(|F|, F_C): a few operations on a root with 1e-15 relative error
 ROOT = 2e-15  # relative error of the contact radius away from rupture: twice brentq's tolerance on its square root
@@ -41,7 +43,12 @@ def log_uniform(low: float, high: float) -> st.SearchStrategy[float]:
     return st.floats(np.log(low), np.log(high)).map(lambda x: float(np.exp(x)))
 
 
-RADII, MODULI, ENERGIES, OVERLAPS = log_uniform(1e-9, 1e-3), log_uniform(1e5, 1e12), log_uniform(1e-12, 10.0), log_uniform(1e-16, 0.5)
+RADII, MODULI, ENERGIES, OVERLAPS = (
+    log_uniform(1e-9, 1e-3),
+    log_uniform(1e5, 1e12),
+    log_uniform(1e-12, 10.0),
+    log_uniform(1e-16, 0.5),
+)
 
 
 def reference(radius: float, modulus: float, energy: float, overlap: float):
@@ -72,9 +79,13 @@ def test_the_neck_agrees_with_fifty_digits_down_to_rupture(radius, modulus, ener
     contact = NormalContact(radius, modulus, energy, "jkr")
     overlap = float(rupture_overlap(contact)) * (1 - depth)
     a, force = reference(radius, modulus, energy, overlap)
-    conditioning = 1e-15 / depth**0.5  # a - a_rupture goes as the square root of the distance, itself known to round-off of the overlap
+    conditioning = (
+        1e-15 / depth**0.5
+    )  # a - a_rupture goes as the square root of the distance, itself known to round-off of the overlap
     assert contact_radius(contact, overlap) == pytest.approx(a, rel=ROOT + conditioning)
-    assert elastic_force(contact, overlap) == pytest.approx(force, abs=(ROUND_OFF + 10 * conditioning) * pull_off_force(contact))
+    assert elastic_force(contact, overlap) == pytest.approx(
+        force, abs=(ROUND_OFF + 10 * conditioning) * pull_off_force(contact)
+    )
 
 
 @given(RADII, MODULI, log_uniform(1e-12, 10.0), OVERLAPS)
@@ -93,7 +104,9 @@ def test_special_points_of_the_curve(model):
     unit, force = equilibrium_contact_radius(contact), pull_off_force(contact)
     assert force == pytest.approx(3 * np.pi * 0.73e-6 * 0.052, rel=1e-15)
     assert elastic_force(contact, 0.0) == pytest.approx(-8 / 9 * force, rel=ROUND_OFF)
-    assert contact_radius(contact, 0.0) == pytest.approx(0.76314282836888791 * unit, rel=PRINTED)  # [mpmath] (2/3)^(2/3)
+    assert contact_radius(contact, 0.0) == pytest.approx(
+        0.76314282836888791 * unit, rel=PRINTED
+    )  # [mpmath] (2/3)^(2/3)
     assert abs(elastic_force(contact, equilibrium_overlap(contact))) < ROUND_OFF * force
     assert contact_radius(contact, equilibrium_overlap(contact)) == pytest.approx(unit, rel=ROOT)
     assert normal_stiffness(contact, equilibrium_overlap(contact)) == pytest.approx(1.2 * 3.8e9 * unit, rel=ROUND_OFF)
@@ -150,7 +163,9 @@ def test_force_and_stiffness_are_derivatives(radius, modulus, energy, strain, mo
     force = (stored_energy(contact, overlap + step) - stored_energy(contact, overlap - step)) / (2 * step)
     stiffness = (elastic_force(contact, overlap + step) - elastic_force(contact, overlap - step)) / (2 * step)
     scale = max(abs(elastic_force(contact, overlap)), pull_off_force(contact))
-    assert abs(force - elastic_force(contact, overlap)) < 1e-6 * scale  # second order in the step of 1e-4, and round-off/step
+    assert (
+        abs(force - elastic_force(contact, overlap)) < 1e-6 * scale
+    )  # second order in the step of 1e-4, and round-off/step
     assert stiffness == pytest.approx(normal_stiffness(contact, overlap), rel=1e-6)
 
 
@@ -160,7 +175,9 @@ def test_no_surface_energy_is_hertz(radius, modulus, strain):
     contact = NormalContact(radius, modulus, 0.0)
     overlap = strain * radius
     assert elastic_force(contact, overlap) == pytest.approx(4 / 3 * modulus * radius**0.5 * overlap**1.5, rel=ROUND_OFF)
-    assert stored_energy(contact, overlap) == pytest.approx(8 / 15 * modulus * radius**0.5 * overlap**2.5, rel=ROUND_OFF)
+    assert stored_energy(contact, overlap) == pytest.approx(
+        8 / 15 * modulus * radius**0.5 * overlap**2.5, rel=ROUND_OFF
+    )
     assert elastic_force(contact, 0.0) == 0.0 and elastic_force(contact, -overlap) == 0.0
 
 
@@ -168,14 +185,21 @@ def test_no_surface_energy_is_hertz(radius, modulus, strain):
 @settings(deadline=None)
 def test_vanishing_surface_energy_tends_to_hertz(radius, modulus, strain):
     overlap = strain * radius
-    energy = 1e-20 * modulus * overlap**1.5 / radius**0.5  # a_0^3/a^3 = 9 pi 1e-20: the first correction to Hertz is its square root
-    assert elastic_force(NormalContact(radius, modulus, energy), overlap) == pytest.approx(4 / 3 * modulus * radius**0.5 * overlap**1.5, rel=1e-8)
+    energy = (
+        1e-20 * modulus * overlap**1.5 / radius**0.5
+    )  # a_0^3/a^3 = 9 pi 1e-20: the first correction to Hertz is its square root
+    assert elastic_force(NormalContact(radius, modulus, energy), overlap) == pytest.approx(
+        4 / 3 * modulus * radius**0.5 * overlap**1.5, rel=1e-8
+    )
 
 
 @given(RADII, MODULI, ENERGIES, OVERLAPS, log_uniform(1e-3, 0.9))
 @settings(max_examples=60, deadline=None)
 def test_scaled_surface_energy_leaves_the_dimensionless_curve_alone(radius, modulus, energy, strain, ratio):
-    contact, softened = NormalContact(radius, modulus, energy), NormalContact(radius, ratio * modulus, energy * ratio**0.4)
+    contact, softened = (
+        NormalContact(radius, modulus, energy),
+        NormalContact(radius, ratio * modulus, energy * ratio**0.4),
+    )
     overlap = strain * radius
     force, soft_force = elastic_force(contact, overlap), elastic_force(softened, overlap * ratio**-0.4)
     assert abs(soft_force / ratio**0.4 - force) <= 10 * ROUND_OFF * max(abs(force), pull_off_force(contact))
@@ -194,12 +218,16 @@ def test_damping_follows_its_own_contact_stiffness(radius, modulus, energy, stra
     assert damping_ratio(restitution) == pytest.approx(beta, rel=ROUND_OFF)
     expected = 2 * (5 / 6) ** 0.5 * beta * (2 * modulus * (radius * overlap) ** 0.5 * mass) ** 0.5
     assert damping_coefficient(simplified, overlap, mass) == pytest.approx(expected, rel=ROUND_OFF)
-    assert damping_coefficient(full, overlap, mass) == pytest.approx(5**0.5 * beta * (mass * 4 / 3 * modulus * a) ** 0.5, rel=ROUND_OFF)
+    assert damping_coefficient(full, overlap, mass) == pytest.approx(
+        5**0.5 * beta * (mass * 4 / 3 * modulus * a) ** 0.5, rel=ROUND_OFF
+    )
 
 
 def test_the_damping_laws_agree_for_hertz_and_the_full_one_acts_in_the_neck():
     hertz = [NormalContact(0.73e-6, 3.8e9, 0.0, model, 0.6) for model in Model]
-    assert damping_coefficient(hertz[0], 2e-9, 3e-15) == pytest.approx(damping_coefficient(hertz[1], 2e-9, 3e-15), rel=ROUND_OFF)
+    assert damping_coefficient(hertz[0], 2e-9, 3e-15) == pytest.approx(
+        damping_coefficient(hertz[1], 2e-9, 3e-15), rel=ROUND_OFF
+    )
     neck = NormalContact(**POLYSTYRENE, model="jkr", restitution_coefficient=0.6)
     assert damping_coefficient(neck, 0.9 * rupture_overlap(neck), 3e-15) > 0
 
@@ -208,7 +236,9 @@ def test_arrays_of_contacts_give_what_each_contact_gives():
     radius, modulus, energy = np.array([0.3e-6, 2e-6, 5e-5]), np.array([2e8, 3.8e9, 7e10]), np.array([0.11, 0.0, 0.02])
     overlap = np.array([3e-9, 1e-8, -2e-10])
     together = elastic_force(NormalContact(radius, modulus, energy, "jkr"), overlap)
-    alone = [elastic_force(NormalContact(*row, "jkr"), x) for *row, x in zip(radius, modulus, energy, overlap)]
+    alone = [
+        elastic_force(NormalContact(*row, "jkr"), x) for *row, x in zip(radius, modulus, energy, overlap, strict=True)
+    ]
     assert together == pytest.approx(alone, rel=1e-14)  # numpy's vector powers round differently
 
 
@@ -219,7 +249,14 @@ def test_effective_properties_of_unlike_bodies():
 
 
 @pytest.mark.parametrize(
-    "wrong", [dict(surface_energy=-0.01), dict(effective_radius=0.0), dict(effective_modulus=float("nan")), dict(model="hertz"), dict(restitution_coefficient=1.2)]
+    "wrong",
+    [
+        dict(surface_energy=-0.01),
+        dict(effective_radius=0.0),
+        dict(effective_modulus=float("nan")),
+        dict(model="hertz"),
+        dict(restitution_coefficient=1.2),
+    ],
 )
 def test_impossible_properties_are_refused(wrong):
     with pytest.raises(ValueError):
@@ -232,3 +269,11 @@ def test_the_root_exists_over_the_whole_range():
             contact = NormalContact(radius, 2e9, energy, "jkr")
             a = contact_radius(contact, radius * np.array([-0.5, -1e-16, 0.0, 1e-16, 1e-8, 0.5]))
             assert np.all(np.isfinite(a)) and np.all(np.diff(a) >= 0)
+
+
+def test_many_roots_at_once_are_the_roots_one_by_one():
+    rng = np.random.default_rng(11)
+    reach, critical = 10 ** rng.uniform(-14, 1, 500), np.where(rng.random(500) < 0.2, 0.0, rng.uniform(1e-3, 1, 500))
+    reach[:2], critical[1] = 0.0, 0.0
+    one_by_one = [scaled_root(r, c) for r, c in zip(reach.tolist(), critical.tolist(), strict=True)]
+    assert scaled_roots(reach, critical) == pytest.approx(one_by_one, rel=1e-14)  # a few roundings of either

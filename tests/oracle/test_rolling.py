@@ -1,5 +1,7 @@
 """Rolling law of the oracle: kinematics, sign, stiffness, limits."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -59,7 +61,9 @@ def test_exchanging_the_spheres_keeps_the_rolling_displacement_and_turns_the_mom
     one = rolling_velocity(0.7, 1.9, w_i, w_j, n, slip)
     other = rolling_velocity(1.9, 0.7, w_j, w_i, -n, -slip)
     assert np.allclose(one, other, atol=ROUND_OFF)
-    assert np.allclose(rolling_moment(3.0, 0.4, one, one, n), -rolling_moment(3.0, 0.4, other, other, -n), atol=ROUND_OFF)
+    assert np.allclose(
+        rolling_moment(3.0, 0.4, one, one, n), -rolling_moment(3.0, 0.4, other, other, -n), atol=ROUND_OFF
+    )
 
 
 @given(VECTOR, VECTOR, VECTOR)
@@ -95,7 +99,7 @@ def test_stiffness_limit_and_damping_take_the_stated_values():
 @settings(max_examples=25, deadline=None)
 def test_a_closed_rolling_cycle_never_makes_energy(corners):
     path, xi, work, critical = np.array([(0.0, 0.0), *corners, (0.0, 0.0)]), np.zeros(3), 0.0, 0.21
-    for start, end in zip(path[:-1], path[1:]):
+    for start, end in itertools.pairwise(path):
         step = np.append((end - start) / 50, 0.0)
         for _ in range(50):
             xi = truncated_displacement(xi + step, critical)

@@ -1,7 +1,8 @@
-"""Clusters in LIGGGHTS and in the oracle, trajectory against trajectory: the plug-in's time stepping tends to the oracle's events.
+"""Clusters in LIGGGHTS and in the oracle: with the time step, the plug-in's trajectories tend to the oracle's.
 
-Both start from the same numbers. The largest difference over all snapshots is taken relative to the impact: of velocities and
-r x spin over the speed, of positions over speed x duration. It must fall with the time step, and be small at the smallest one.
+Both start from the same numbers. The largest difference over all snapshots is taken relative to the impact: of
+velocities and r x spin over the speed, of positions over speed x duration. It must fall with the time step, and be
+small at the smallest one.
 """
 
 from __future__ import annotations
@@ -12,16 +13,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from simulation import Materials, Simulation, Sphere
+from trajectory import trajectory
 
 from pyjkr import oracle
 from pyjkr.run import Simulator
-from simulation import Materials, Simulation, Sphere
-from trajectory import trajectory
 
 pytestmark = pytest.mark.liggghts
 
 SNAPSHOTS = 10
 FINEST = 3200  # steps a collision
+CLOSE = 2e-4  # at FINEST; measured: 7e-6 to 1.2e-4, nearly all from the sliding dashpot, which acts at the half step
 ORDER = 0.8  # of 1: dashpots act at the half step, springs yield and contacts are made or broken within a step
 RADIUS, DENSITY, YOUNGS, POISSON, ENERGY = 0.61e-6, 1047.0, 3.3e9, 0.34, 0.053
 MODELS = ("jkr/simplified", "jkr")
@@ -29,11 +31,10 @@ MODELS = ("jkr/simplified", "jkr")
 
 @dataclass(frozen=True)
 class Case:
-    """Spheres on nothing or on the floor z = 0; `softening` is E_mod/E with gamma ~ E^(2/5), the originals given beside them."""
+    """Spheres, free or on the floor z = 0; `softening` is E_mod/E with gamma ~ E^(2/5), the originals beside them."""
 
     spheres: list[Sphere]
     duration: float  # in Hertz collision times at `speed`
-    tolerance: float  # of the largest difference at FINEST
     model: str = "jkr"
     speed: float = 6.0
     floor: bool = False
@@ -69,7 +70,10 @@ class Case:
             effective_modulus_original=oracle.effective_modulus(YOUNGS, POISSON, YOUNGS, POISSON),
         )
         start = oracle.Assembly(
-            *(np.array([getattr(sphere, name) for sphere in self.spheres], dtype=float) for name in ("position", "velocity", "spin")),
+            *(
+                np.array([getattr(sphere, name) for sphere in self.spheres], dtype=float)
+                for name in ("position", "velocity", "spin")
+            ),
             radius,
             4 / 3 * math.pi * radius**3 * DENSITY,
             law,
@@ -78,7 +82,9 @@ class Case:
         )
         return oracle.follow(start, self.duration * self.collision_time, samples=SNAPSHOTS + 1, relative_tolerance=1e-8)
 
-    def in_liggghts(self, plugin: Simulator, directory: Path, steps_a_collision: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def in_liggghts(
+        self, plugin: Simulator, directory: Path, steps_a_collision: int
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Positions [m], velocities [m/s], spins [rad/s]: snapshots x spheres x 3."""
         every = round(self.duration * steps_a_collision / SNAPSHOTS)
         properties = dict(
@@ -107,7 +113,9 @@ class Case:
         )
         return tuple(np.stack([t[name + axis] for axis in "xyz"], axis=-1) for name in ("", "v", "omega"))
 
-    def differences(self, plugin: Simulator, directory: Path, reference: oracle.Trajectory, steps_a_collision: int) -> np.ndarray:
+    def differences(
+        self, plugin: Simulator, directory: Path, reference: oracle.Trajectory, steps_a_collision: int
+    ) -> np.ndarray:
         """Largest of each: positions, velocities, spins."""
         position, velocity, spin = self.in_liggghts(plugin, directory, steps_a_collision)
         radius = np.array([sphere.radius for sphere in self.spheres])[:, None]
@@ -123,13 +131,18 @@ class Case:
 
 def equilibrium(radius_i: float, radius_j: float = math.inf) -> float:
     """Overlap without load of the real material [m]."""
-    contact = oracle.NormalContact(oracle.effective_radius(radius_i, radius_j), oracle.effective_modulus(YOUNGS, POISSON, YOUNGS, POISSON), ENERGY, "jkr")
+    contact = oracle.NormalContact(
+        oracle.effective_radius(radius_i, radius_j),
+        oracle.effective_modulus(YOUNGS, POISSON, YOUNGS, POISSON),
+        ENERGY,
+        "jkr",
+    )
     return float(oracle.equilibrium_overlap(contact))
 
 
 def oblique_wall() -> Case:
-    sphere = Sphere((0.0, 0.0, 1.003 * RADIUS), RADIUS, DENSITY, (5.9, -2.1, -6.3), (0.4e6, 2.3e6, -1.1e6))
-    return Case([sphere], 2.1, 2e-4, floor=True, expected={"make", "slip", "roll", "spin", "break"})
+    sphere = Sphere((0.0, 0.0, 1.003 * RADIUS), RADIUS, DENSITY, (5.9, -2.1, -6.3), (0.4e6, 2.3e6, -7.1e6))
+    return Case([sphere], 2.1, floor=True, expected={"make", "slip", "roll", "spin", "break"})
 
 
 def oblique_pair() -> Case:
@@ -137,9 +150,9 @@ def oblique_pair() -> Case:
     apart = 1.002 * (RADIUS + small)
     spheres = [
         Sphere((0.0, 0.0, 0.0), RADIUS, DENSITY, (2.9, 1.3, 1.7), (0.9e6, -1.4e6, 2.2e6)),
-        Sphere(tuple(apart * normal), small, DENSITY, (-3.4, -4.9, -2.8), (-2.1e6, 0.8e6, 1.3e6)),
+        Sphere(tuple(apart * normal), small, DENSITY, (-3.4, -4.9, -2.8), (1.7e6, 9.6e6, 10.4e6)),
     ]
-    return Case(spheres, 1.4, 2e-4, speed=9.0, softening=0.11, rolling_damping=0.13, expected={"make", "slip", "roll", "break"})
+    return Case(spheres, 1.4, speed=9.0, softening=0.11, rolling_damping=0.13, expected={"make", "roll", "break"})
 
 
 def necking_pair() -> Case:
@@ -150,7 +163,7 @@ def necking_pair() -> Case:
         Sphere((0.0, 0.0, 0.0), RADIUS, DENSITY, tuple(-0.3 * away), (0.5e6, -0.2e6, 1.9e6)),
         Sphere(tuple(apart * normal), small, DENSITY, tuple(0.7 * away), (-0.4e6, 0.6e6, -0.3e6)),
     ]
-    return Case(spheres, 1.2, 2e-4, speed=2.5, expected={"break"})
+    return Case(spheres, 1.2, speed=2.5, expected={"break"})
 
 
 def struck_chain() -> Case:
@@ -158,17 +171,28 @@ def struck_chain() -> Case:
     spheres = [Sphere((k * step, 0.0, 0.0), RADIUS, DENSITY) for k in range(2)]
     spheres += [Sphere(((1 + math.cos(0.7)) * step, math.sin(0.7) * step, 0.0), RADIUS, DENSITY)]
     hit = np.array([-0.81, 0.45, 0.37]) / np.linalg.norm([-0.81, 0.45, 0.37])
-    spheres.insert(0, Sphere(tuple(2.004 * RADIUS * hit), RADIUS, DENSITY, tuple(-5.0 * hit + [0.3, 2.4, -0.8]), (1.1e6, 0.3e6, -0.7e6)))
-    return Case(spheres, 3.0, 4e-4, friction=0.33, rolling_damping=0.07, expected={"make", "roll"})
+    spheres.insert(
+        0,
+        Sphere(
+            tuple(2.004 * RADIUS * hit), RADIUS, DENSITY, tuple(-5.0 * hit + [0.3, 2.4, -0.8]), (1.1e6, 0.3e6, -0.7e6)
+        ),
+    )
+    return Case(spheres, 3.0, friction=0.33, rolling_damping=0.07, expected={"make", "roll"})
 
 
 def cluster_on_wall() -> Case:
     gap, height = 2 * RADIUS - equilibrium(RADIUS, RADIUS), RADIUS - equilibrium(RADIUS)
-    corners = gap / math.sqrt(3) * np.array([[math.cos(a), math.sin(a)] for a in (0.2, 0.2 + 2 * math.pi / 3, 0.2 + 4 * math.pi / 3)])
+    corners = (
+        gap
+        / math.sqrt(3)
+        * np.array([[math.cos(a), math.sin(a)] for a in (0.2, 0.2 + 2 * math.pi / 3, 0.2 + 4 * math.pi / 3)])
+    )
     spheres = [Sphere((x, y, height), RADIUS, DENSITY) for x, y in corners]
     top = height + math.sqrt(gap**2 - gap**2 / 3) + 0.01 * RADIUS
-    spheres.append(Sphere((0.04 * RADIUS, -0.02 * RADIUS, top), 0.93 * RADIUS, DENSITY, (1.6, -0.9, -4.8), (0.6e6, 1.2e6, -0.9e6)))
-    return Case(spheres, 2.2, 1e-3, floor=True, friction=0.4, expected={"make", "roll"})
+    spheres.append(
+        Sphere((0.04 * RADIUS, -0.02 * RADIUS, top), 0.93 * RADIUS, DENSITY, (1.6, -0.9, -4.8), (0.6e6, 1.2e6, -0.9e6))
+    )
+    return Case(spheres, 2.2, floor=True, friction=0.4, expected={"make", "roll"})
 
 
 CASES = {case.__name__: case for case in (oblique_wall, oblique_pair, necking_pair, struck_chain, cluster_on_wall)}
@@ -180,8 +204,8 @@ def test_trajectories_tend_to_those_of_the_oracle(plugin: Simulator, tmp_path: P
     case = replace(CASES[name](), model=model)
     reference = case.in_oracle()
     assert case.expected <= {event.kind for event in reference.events}
-    steps = [FINEST // 4, FINEST // 2, FINEST]
+    steps = [FINEST // 8, FINEST // 4, FINEST // 2, FINEST]
     errors = np.array([case.differences(plugin, tmp_path / str(n), reference, n) for n in steps])
-    order = np.polyfit(-np.log(steps), np.log(errors), 1)[0]
-    assert np.all(errors[-1] < case.tolerance), f"position, velocity, spin: {errors}"
-    assert np.all(order > ORDER), f"orders {order} of {errors}"
+    order = np.polyfit(-np.log(steps), np.log(errors.max(axis=1)), 1)[0]
+    assert np.all(errors[-1] < CLOSE), f"position, velocity, spin: {errors}"
+    assert order > ORDER, f"order {order} of {errors}"
