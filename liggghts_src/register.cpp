@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adapters/contact_model.h"
+#include "adapters/pair_loop.h"
 
 namespace pyjkr {
 namespace {
@@ -102,7 +103,7 @@ void add() {
   using Model = ContactModel<S>;
   using IPair = LIGGGHTS::PairStyles::IGranularPairStyle;
   using IWall = LIGGGHTS::Walls::IGranularWall;
-  PairFactory::instance().addStyle("gran", S::hash(), &create<IPair, LIGGGHTS::PairStyles::Granular<Model>, LAMMPS_NS::PairGran>);
+  PairFactory::instance().addStyle("gran", S::hash(), &create<IPair, PairLoop<Model>, LAMMPS_NS::PairGran>);
   WallFactory::instance().addStyle("gran", S::hash(), &create<IWall, LIGGGHTS::Walls::Granular<Model>, LAMMPS_NS::FixWallGran>);
   registered().push_back(S::hash());
 }

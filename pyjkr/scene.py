@@ -264,8 +264,9 @@ class Scene(_Table):
     @model_validator(mode="after")
     def _laws_have_their_parameters(self) -> Scene:
         contact, where = self.meeting, f"contact {_pair(self.meeting)}"
-        if self.model.tangential != "off" and contact.friction_coefficient is None:
-            raise _fault(f"{where}: friction_coefficient is missing. model.tangential = '{self.model.tangential}' needs it.")
+        if (self.model.tangential != "off" or self.model.twisting) and contact.friction_coefficient is None:
+            what = "twisting = true" if self.model.tangential == "off" else f"tangential = '{self.model.tangential}'"
+            raise _fault(f"{where}: friction_coefficient is missing. model.{what} needs it.")
         if self.model.rolling_friction == "epsd2":
             if contact.coefficient_rolling_friction is None:
                 raise _fault(f"{where}: coefficient_rolling_friction is missing. rolling_friction = 'epsd2' needs it.")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -18,7 +17,6 @@ from pyjkr.cost.impacts import Outcome, even_phases, execute, prepare, render
 from pyjkr.cost.measure import rows_of
 from pyjkr.cost.studies import Job
 from pyjkr.plan import plan
-from pyjkr.run import Simulator
 from pyjkr.scene import load
 
 # Of a fit through points that lie on a power law.
@@ -80,6 +78,7 @@ def fabricated(dahneke):
         for turn, disturbed in enumerate((1.0, 4.0, 1.1)):
             time = 5e-8 * disturbed * (1.2 if corrected == "on" else 1.0)
             rows.append(impact_row("time", event_correction=corrected, turn=turn, time_per_step=time))
+    rows.append(impact_row("restitution", restitution_coefficient=0.95))
     for ratio, steps, corrected, total, error in ((1.0, 200, "off", 6000, 3e-2), (0.01, 20, "on", 100, 9e-3)):
         for phase in (0.25, 0.75):
             keys = {"steps_per_collision": steps, "event_correction": corrected, "modulus_ratio": ratio, "phase": phase}
@@ -102,6 +101,13 @@ def test_errors_by_steps_are_the_largest_over_phases_with_their_order(fabricated
     assert table.loc["on", 20] == 4e-3
     assert table.loc["on", "order"] == pytest.approx(2.0, rel=ROUND_OFF)
     assert table.loc["off", "order"] == pytest.approx(1.0, rel=ROUND_OFF)
+
+
+def test_steps_for_the_same_error_follow_from_the_fitted_power_law(fabricated):
+    rows = results.steps_for_equal_error(fabricated).set_index("steps")
+    # 8 times the error at 20 steps, of first order: 4e-3 needs 8 times the steps.
+    assert rows.loc[20, "steps_without"] == pytest.approx(160, rel=ROUND_OFF)
+    assert rows.loc[60, "steps_without"] == pytest.approx(160 * 9, rel=ROUND_OFF)
 
 
 def test_time_ratio_is_the_median_of_ratios_within_a_turn(fabricated):

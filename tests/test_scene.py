@@ -203,6 +203,11 @@ def test_an_oblique_impact_of_two_spheres_is_refused(tmp_path):
     assert "needs target = 'wall'" in complaint(tmp_path, edited(PAIR, ("phase = 0.21", "phase = 0.21\nangle = 20.0")))
 
 
+def test_twisting_without_sliding_needs_the_friction_coefficient_of_its_limit(tmp_path):
+    text = edited(PAIR, ('tangential = "jkr"', 'tangential = "off"'), ("friction_coefficient = 0.4\n", ""))
+    assert "friction_coefficient is missing. model.twisting = true needs it" in complaint(tmp_path, text)
+
+
 def test_an_unknown_key_is_named_rather_than_the_key_that_it_hides(tmp_path):
     assert "unknown key 'speds'" in complaint(tmp_path, edited(DAHNEKE, ("speeds", "speds")))
 

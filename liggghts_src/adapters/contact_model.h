@@ -46,7 +46,6 @@ class ContactModel : public lcm::ContactModelBase {
   ContactModel(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t)
       : ContactModelBase(lmp, is_wall),
         simulator_(lmp),
-        pair_gran_(dynamic_cast<LAMMPS_NS::PairGran*>(setup)),
         wall_(dynamic_cast<LAMMPS_NS::FixWallGran*>(setup)),
         surface_(lmp, setup, this),
         materials_(lmp),
@@ -113,7 +112,6 @@ class ContactModel : public lcm::ContactModelBase {
     } else if (!update_history || !normal_.carries_contact(history) || !was_touching(sidata)) {
       return release(sidata);
     }
-    complete_geometry(sidata);
     const PairProperties pair = pair_of(sidata);
     const double overlap = sidata.radsum - sidata.r;
     if (Law::has_neck && overlap > Law::breaking_overlap(pair)) {
@@ -142,7 +140,6 @@ class ContactModel : public lcm::ContactModelBase {
 
  private:
   Simulator simulator_;
-  LAMMPS_NS::PairGran* pair_gran_;
   LAMMPS_NS::FixWallGran* wall_;
   lcm::SurfaceModel<lcm::SURFACE_DEFAULT> surface_;
   MaterialTable materials_;
@@ -287,27 +284,6 @@ class ContactModel : public lcm::ContactModelBase {
     return dot(before, before) < sidata.radsum * sidata.radsum;
   }
 
-  // For pairs that do not overlap LIGGGHTS leaves r, e, masses and spins of an earlier pair in the data.
-  void complete_geometry(Data& sidata) const {
-    if (sidata.is_wall) return;
-    sidata.r = std::sqrt(sidata.rsq);
-    sidata.rinv = 1.0 / sidata.r;
-    for (int k = 0; k < 3; ++k) sidata.en[k] = sidata.delta[k] * sidata.rinv;
-    const int i = sidata.i, j = sidata.j;
-    sidata.omega_i = simulator_.atom->omega[i];
-    sidata.omega_j = simulator_.atom->omega[j];
-    sidata.mi = simulator_.atom->rmass ? simulator_.atom->rmass[i] : simulator_.atom->mass[sidata.itype];
-    sidata.mj = simulator_.atom->rmass ? simulator_.atom->rmass[j] : simulator_.atom->mass[sidata.jtype];
-    if (pair_gran_->fr_pair()) {
-      const double* rigid = pair_gran_->mr_pair();
-      if (rigid[i] > 0.0) sidata.mi = rigid[i];
-      if (rigid[j] > 0.0) sidata.mj = rigid[j];
-    }
-    sidata.meff = sidata.mi * sidata.mj / (sidata.mi + sidata.mj);
-    if (simulator_.atom->mask[i] & pair_gran_->freeze_group_bit()) sidata.meff = sidata.mj;
-    if (simulator_.atom->mask[j] & pair_gran_->freeze_group_bit()) sidata.meff = sidata.mi;
-  }
-
   // No contact: nothing is remembered.
   void release(Data& sidata) {
     if (sidata.contact_flags)
@@ -327,7 +303,8 @@ class ContactModel : public lcm::ContactModelBase {
 
   // Ask the neighbour search for the room that necks and broken contacts need, or say what to change.
   void claim_room(double smallest_radius, double largest_radius) {
-    double band = normal_.event_correction() ? kEventBand : 0.0;
+    // pairs are found by the flag of their contact as far as the neighbour skin reaches
+    double band = wall_ && normal_.event_correction() ? kEventBand : 0.0;
     if (Law::has_neck && smallest_radius > 0.0) {
       double longest = 0.0, longest_of_largest = 0.0;
       for (int i = 1; i <= materials_.types(); ++i)

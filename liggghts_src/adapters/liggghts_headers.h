@@ -25,8 +25,10 @@ namespace pyjkr {
 // LIGGGHTS' own pointers, for classes whose base keeps them private.
 struct Simulator : LAMMPS_NS::Pointers {
   using Pointers::atom;
+  using Pointers::comm;
   using Pointers::error;
   using Pointers::force;
+  using Pointers::lmp;
   using Pointers::modify;
   using Pointers::neighbor;
   using Pointers::Pointers;
