@@ -23,6 +23,9 @@ _POLL_SECONDS = 0.1
 # mpirun gives its ranks 2 s to obey SIGTERM before it kills them.
 _GRACE_SECONDS = 5.0
 
+# A typing slip must not start a thousand processes; a few a core are slow but harmless.
+_RANKS_PER_CORE = 8
+
 # One process without networks: Open MPI starts in a third of the time.
 _ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_pml": "ob1", "OMPI_MCA_btl": "self"}
 
@@ -39,6 +42,9 @@ def command(simulator: Simulator, deck: str, log: str, ranks: int) -> tuple[list
         preload = " ".join(filter(None, [str(simulator.preload), environment.get("LD_PRELOAD")]))
     if ranks < 1:
         raise RunError(f"ranks = {ranks} must be >= 1.")
+    most = _RANKS_PER_CORE * (os.cpu_count() or 1)
+    if ranks > most:
+        raise RunError(f"ranks = {ranks} is more than {_RANKS_PER_CORE} a core of this machine ({most}). Ask for fewer.")
     if ranks == 1:
         return words, environment | ({"LD_PRELOAD": preload} if preload else {})
     mpirun = shutil.which("mpirun")
@@ -59,7 +65,10 @@ def program(command: list[str], environment: dict[str, str], directory: Path) ->
 
     A terminal rather than a pipe: into a pipe LIGGGHTS prints blocks of many thermo lines at a time.
     """
-    terminal, its_end = pty.openpty()
+    try:
+        terminal, its_end = pty.openpty()
+    except OSError as error:
+        raise RunError(f"no terminal for {command[0]}: {error}. Too many programs run on this machine; end some.") from None
     try:
         process = subprocess.Popen(
             command,

@@ -295,3 +295,10 @@ def test_liggghts_that_others_tell_to_stop_does_not_count_as_done(
     stopped = program(tmp_path / "sim", f'(sleep {IN_FULL_SWING}; kill -TERM $$) & exec {liggghts.executable} "$@"')
     with pytest.raises(RunError, match="exit status 0, but stopped by a signal"):
         run_deck(deck, simulator=stopped)
+
+
+def test_more_ranks_than_a_machine_bears_are_refused_before_any_starts(tmp_path):
+    deck = tmp_path / "in.deck"
+    deck.write_text("units si\n")
+    with pytest.raises(RunError, match=r"ranks = 100000 is more than 8 a core of this machine \(\d+\). Ask for fewer."):
+        run_deck(deck, ranks=100_000, simulator=Simulator(Path("/bin/true")))

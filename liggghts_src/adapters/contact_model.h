@@ -12,6 +12,7 @@
 #include <string>
 
 #include "material_table.h"
+#include "mesh_edges.h"
 #include "normal_model_jkr.h"
 #include "radius_range.h"
 #include "rolling_model_krijt.h"
@@ -100,10 +101,13 @@ class ContactModel : public lcm::ContactModelBase {
   }
 
   // Overlapping surfaces.
-  void surfacesIntersect(Data& sidata, Forces& i, Forces& j) { contact(sidata, i, j); }
+  void surfacesIntersect(Data& sidata, Forces& i, Forces& j) {
+    if (!sidata.mesh || takes_its_place(sidata)) contact(sidata, i, j);
+  }
 
   // Surfaces apart but near: a neck, a contact that has just broken, or nothing.
   void surfacesClose(Data& sidata, Forces& i, Forces& j) {
+    if (sidata.mesh && !takes_its_place(sidata)) return;
     double* const history = sidata.contact_history;
     const bool update_history = sidata.computeflag && sidata.shearupdate;
     if (Law::has_neck) {
@@ -146,6 +150,7 @@ class ContactModel : public lcm::ContactModelBase {
   NormalModelJkr<Law> normal_;
   Tangential tangential_;
   Rolling rolling_;
+  MeshEdges mesh_edges_{simulator_};
   bool elastic_potential_ = false;
   bool dissipated_energy_ = false;
   double last_radius_ = 0.0;
@@ -161,6 +166,39 @@ class ContactModel : public lcm::ContactModelBase {
       last_inverse_root_ = 1.0 / std::cbrt(radius);
     }
     return {&materials_(sidata.itype, sidata.jtype), radius, last_inverse_root_, sidata.meff};
+  }
+
+  // A contact with one triangle of a mesh: false where a neighbouring triangle has it. One that was on another triangle a
+  // step ago goes on with its history.
+  bool takes_its_place(Data& sidata) {
+    const bool shadowed = mesh_edges_.is_beside_a_nearer_face(sidata);
+    double* const history = sidata.contact_history;
+    const int values = wall_->dnum();
+    if (values == 0 || !(sidata.computeflag && sidata.shearupdate)) return !shadowed;
+    const double reach = -Law::breaking_overlap(pair_of_wall(sidata));
+    const bool live = MeshEdges::is_live(history, values);
+    if (shadowed) {
+      // the nearer triangle takes the history over when its turn comes; if it has its own already, this one is old
+      if (live && mesh_edges_.is_held_elsewhere(sidata, values, reach)) release(sidata);
+      return false;
+    }
+    if (!live && was_near(sidata, reach))
+      if (double* const other = mesh_edges_.left_elsewhere(sidata, values, reach))
+        for (int k = 0; k < values; ++k) {
+          history[k] = other[k];
+          other[k] = 0.0;
+        }
+    return true;
+  }
+
+  // Before LIGGGHTS has filled in the rest: geometry of a wall contact, without masses.
+  PairProperties pair_of_wall(const Data& sidata) const {
+    return pair_properties(materials_(sidata.itype, sidata.jtype), sidata.radi, sidata.meff);
+  }
+
+  // Within the reach of a contact one step ago.
+  bool was_near(const Data& sidata, double reach) const {
+    return sidata.deltan + separation_speed(sidata) * simulator_.update->dt > -reach;
   }
 
   // Both slots are ours or empty: nobody reads what LIGGGHTS' surface model leaves in the data.
