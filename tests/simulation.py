@@ -14,7 +14,27 @@ import pandas as pd
 
 from pyjkr import dump, run
 
-COLUMNS = ("id type x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz radius mass").split()
+COLUMNS = [
+    "id",
+    "type",
+    "x",
+    "y",
+    "z",
+    "vx",
+    "vy",
+    "vz",
+    "fx",
+    "fy",
+    "fz",
+    "omegax",
+    "omegay",
+    "omegaz",
+    "tqx",
+    "tqy",
+    "tqz",
+    "radius",
+    "mass",
+]
 
 
 @dataclass(frozen=True)
@@ -68,14 +88,14 @@ class Simulation:
     style: str = "model jkr/simplified tangential jkr rolling_friction krijt"
     keywords: str = ""
     walls: Sequence[str] = ()
-    box: Sequence[float] = ()            # xlo xhi ylo yhi zlo zhi; default: room around the spheres
+    box: Sequence[float] = ()  # xlo xhi ylo yhi zlo zhi; default: room around the spheres
     boundary: str = "f f f"
     skin: float | None = None
-    every: int = 1                       # steps between snapshots
-    before_run: Sequence[str] = ()       # lines before the last run command
+    every: int = 1  # steps between snapshots
+    before_run: Sequence[str] = ()  # lines before the last run command
     after_run: Sequence[str] = ()
-    run_lines: Sequence[str] | None = None   # in place of `run STEPS`
-    setup: Sequence[str] = ()            # lines before the pair style
+    run_lines: Sequence[str] | None = None  # in place of `run STEPS`
+    setup: Sequence[str] = ()  # lines before the pair style
     columns: Sequence[str] = field(default_factory=lambda: COLUMNS)
 
     def deck(self) -> str:
@@ -89,12 +109,23 @@ class Simulation:
                 at = [sphere.position[axis] for sphere in self.spheres]
                 box += [min(at) - 20 * largest, max(at) + 20 * largest]
         lines = [
-            "atom_style granular", "atom_modify map array", f"boundary {self.boundary}", "newton off",
-            "communicate single vel yes", "units si", "hard_particles yes", "soft_particles yes",
+            "atom_style granular",
+            "atom_modify map array",
+            f"boundary {self.boundary}",
+            "newton off",
+            "communicate single vel yes",
+            "units si",
+            "hard_particles yes",
+            "soft_particles yes",
             "region box block " + " ".join(repr(float(edge)) for edge in box) + " units box",
-            f"create_box {self.materials.types} box", f"neighbor {skin!r} bin", "neigh_modify delay 0",
-            *self.materials.lines(), *self.setup,
-            f"pair_style gran {self.style} {self.keywords}", "pair_coeff * *", f"timestep {self.time_step!r}",
+            f"create_box {self.materials.types} box",
+            f"neighbor {skin!r} bin",
+            "neigh_modify delay 0",
+            *self.materials.lines(),
+            *self.setup,
+            f"pair_style gran {self.style} {self.keywords}",
+            "pair_coeff * *",
+            f"timestep {self.time_step!r}",
         ]
         for number, wall in enumerate(self.walls):
             lines.append(f"fix wall{number} all wall/gran {self.style} {wall} {self.keywords}")
@@ -108,7 +139,9 @@ class Simulation:
             lines.append("group one delete")
         number_formats = " ".join("%d" if c in ("id", "type") else "%.17g" for c in self.columns)
         lines += [
-            "fix integrate all nve/sphere", "thermo_style custom step atoms ke", f"thermo {max(1, self.steps // 10)}",
+            "fix integrate all nve/sphere",
+            "thermo_style custom step atoms ke",
+            f"thermo {max(1, self.steps // 10)}",
             "thermo_modify lost error norm no",
             f"dump trajectory all custom {self.every} trajectory.txt " + " ".join(self.columns),
             f'dump_modify trajectory sort id format "{number_formats}"',

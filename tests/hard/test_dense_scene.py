@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from adhesive_pair import AdhesivePair, effective_modulus, sphere_mass
 from scipy.spatial import cKDTree
 from simulation import Materials, Simulation, Sphere
-
-from adhesive_pair import AdhesivePair, effective_modulus, sphere_mass
 
 pytestmark = pytest.mark.liggghts
 

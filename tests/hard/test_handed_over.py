@@ -7,10 +7,10 @@ import itertools
 
 import numpy as np
 import pytest
-from pyjkr import dump, run
+from adhesive_pair import AdhesivePair, effective_modulus, sphere_mass
 from simulation import Materials, Simulation, Sphere
 
-from adhesive_pair import AdhesivePair, effective_modulus, sphere_mass
+from pyjkr import dump, run
 
 pytestmark = pytest.mark.liggghts
 

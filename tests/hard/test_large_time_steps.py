@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pyjkr import dump
-from pyjkr.errors import DumpError, RunError
+from adhesive_pair import AdhesivePair, effective_modulus, effective_shear_modulus
 from simulation import Materials, Simulation, Sphere
 
-from adhesive_pair import AdhesivePair, effective_modulus, effective_shear_modulus
+from pyjkr import dump
+from pyjkr.errors import DumpError, RunError
 
 pytestmark = pytest.mark.liggghts
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from simulation import Materials, Simulation, Sphere
-
 from adhesive_pair import AdhesivePair, effective_modulus, sphere_mass
+from simulation import Materials, Simulation, Sphere
 
 pytestmark = pytest.mark.liggghts
 
