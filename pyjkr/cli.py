@@ -36,6 +36,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         # The reader, `head` for one, has enough; keep Python from complaining at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        # A disk that is full, a directory that may not be written.
+        where = f"{error.filename}: " if error.filename else ""
+        print(f"pyjkr: {where}{error.strerror or error}. Choose another directory with -o, or make room.", file=sys.stderr)
+        return RunError.exit_code
     return 0
 
 

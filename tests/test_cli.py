@@ -248,3 +248,10 @@ def test_two_processes_give_what_one_gives(tmp_path, plugin):
         assert run("run", scene, "-o", tmp_path / str(ranks), "--np", ranks) == 0
         tables.append(pd.read_csv(tmp_path / str(ranks) / "table.csv")["e_eff_liggghts"])
     assert tables[0].tolist() == tables[1].tolist()
+
+
+def test_a_directory_that_cannot_be_made_is_one_line_and_no_traceback(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert main(["run", "dahneke", "--engine", "oracle", "-o", str(tmp_path / "file" / "under")]) == 3
+    error = capsys.readouterr().err
+    assert error.splitlines()[-1] == f"pyjkr: {tmp_path / 'file' / 'under'}: Not a directory. Choose another directory with -o, or make room."
