@@ -5,13 +5,14 @@ Finished cases are not run again: `run.json` beside the deck tells whether the r
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
 
 from pyjkr import compare, deck, dump
 from pyjkr.case import Case, Plan
 from pyjkr.compare import Outcome
-from pyjkr.errors import RunError
+from pyjkr.errors import DumpError, RunError
 from pyjkr.run import Run, Simulator, read_run, run_deck
 
 
@@ -49,8 +50,13 @@ def execute(plan: Plan, directory: Path, simulator: Simulator, *, ranks: int = 1
     outcomes = {}
     for case in plan.cases:
         finished = _finished(plan, case, directory, ranks)
-        run = finished or _run(plan, case, directory, simulator, ranks, watcher)
-        outcomes[case.label] = _read(case, run)
+        if finished is not None:
+            # its dump may have been cut or overwritten since: then the case is run again
+            with suppress(DumpError):
+                outcomes[case.label] = _read(case, finished)
+        if case.label not in outcomes:
+            outcomes[case.label] = _read(case, _run(plan, case, directory, simulator, ranks, watcher))
+            finished = None
         watcher.done(case, finished is not None)
     return outcomes
 

@@ -155,7 +155,11 @@ def _load(name: str):
     if not path.is_file() and path.suffix != ".toml":
         known = ", ".join(resources.shipped_cases())
         raise SceneError(f"{name}: neither a scene file nor a shipped case. Shipped: {known}.")
-    made = plan(load(path))
+    scene = load(path)
+    try:
+        made = plan(scene)
+    except (OverflowError, ZeroDivisionError) as error:
+        raise SceneError(f"{path}: its numbers lead beyond what can be computed ({error}). Look for a slip in an exponent.") from None
     for warning in made.warnings:
         print(f"pyjkr: warning: {warning}", file=sys.stderr)
     return path, made

@@ -255,3 +255,23 @@ def test_a_directory_that_cannot_be_made_is_one_line_and_no_traceback(tmp_path, 
     assert main(["run", "dahneke", "--engine", "oracle", "-o", str(tmp_path / "file" / "under")]) == 3
     error = capsys.readouterr().err
     assert error.splitlines()[-1] == f"pyjkr: {tmp_path / 'file' / 'under'}: Not a directory. Choose another directory with -o, or make room."
+
+
+@pytest.mark.liggghts
+def test_a_case_whose_dump_was_cut_since_is_run_again(tmp_path, plugin, capsys):
+    scene = written(tmp_path, DAHNEKE)
+    words = ["run", str(scene), "-o", str(tmp_path / "out"), "--no-progress"]
+    assert main(words) == 0
+    dump = next((tmp_path / "out").glob("*/impact.dump"))
+    whole = dump.read_bytes()
+    dump.write_bytes(whole[:-100])
+    assert main(words) == 0
+    assert dump.read_bytes() == whole
+
+
+@pytest.mark.parametrize("change", [("271e6", "1e300"), ("1026.0", "1e-300")])
+def test_numbers_beyond_computing_are_one_line_and_no_traceback(tmp_path, capsys, change):
+    text = DAHNEKE.replace(*change)
+    assert text != DAHNEKE
+    assert main(["plan", str(written(tmp_path, text))]) == 2
+    assert "Traceback" not in capsys.readouterr().err

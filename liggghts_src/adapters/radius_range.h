@@ -33,8 +33,11 @@ inline RadiusRange radius_range(Simulator& simulator) {
     LAMMPS_NS::Fix* fix = simulator.modify->fix[k];
     if (!fix->use_rad_for_cut_neigh_and_ghost()) continue;
     for (int type = 1; type <= simulator.atom->ntypes; ++type) {
-      include(fix->min_rad(type));
-      include(fix->max_rad(type));
+      // an insertion fix without a template of this type answers with a smallest radius of 1000 and a largest of 0
+      const double smallest = fix->min_rad(type), largest = fix->max_rad(type);
+      if (!(smallest <= largest)) continue;
+      include(smallest);
+      include(largest);
     }
   }
   double global[2];

@@ -15,7 +15,7 @@ DENSITY = 1300.0
 STYLE = "model {} tangential jkr rolling_friction krijt"
 
 PAIR_STEPS = 10_000_000
-CHAIN_STEPS = 3_000_000
+CHAIN_STEPS = 10_000_000
 CLUSTER_STEPS = 6_000
 # Velocity Verlet at 40 steps a period conserves a shadow energy; of the true one, (omega dt)^2/4 = 0.6 % breathes
 # with the

@@ -15,7 +15,7 @@ import pytest
 from simulation import Materials, Simulation, Sphere
 from trajectory import trajectory
 
-from pyjkr.run import Simulator
+from pyjkr.run import Simulator, run_deck
 
 pytestmark = pytest.mark.liggghts
 
@@ -271,3 +271,44 @@ def test_originals_equal_to_the_values_of_the_law_change_nothing(plugin: Simulat
         assert frames[1][column] == pytest.approx(
             frames[0][column], rel=1e-13, abs=1e-13 * np.abs(frames[0][column]).max()
         )
+
+
+INSERTION = """\
+atom_style granular
+atom_modify map array
+boundary f f f
+newton off
+communicate single vel yes
+units si
+region box block -1e-5 1e-5 -1e-5 1e-5 0.0 2e-5 units box volume_limit 1e-20
+create_box 2 box
+neighbor 5e-7 bin
+neigh_modify delay 0
+hard_particles yes
+fix m1 all property/global youngsModulus peratomtype 3.8e8 4.1e8
+fix m2 all property/global poissonsRatio peratomtype 0.33 0.29
+fix m3 all property/global coefficientRestitution peratomtypepair 2 0.7 0.6 0.6 0.5
+fix m4 all property/global coefficientFriction peratomtypepair 2 0.3 0.4 0.4 0.2
+fix m5 all property/global surfaceEnergy peratomtypepair 2 0.05 0.03 0.03 0.02
+fix m6 all property/global criticalRollingAngle peratomtypepair 2 0.008 0.009 0.009 0.007
+pair_style gran model {model} tangential jkr rolling_friction krijt twisting on
+pair_coeff * *
+timestep 2e-10
+fix floor all wall/gran model {model} tangential jkr rolling_friction krijt primitive type 2 zplane 0.0 twisting on
+fix small all particletemplate/sphere 15485863 atom_type 1 density constant 1100 radius constant 0.8e-6 volume_limit 1e-20
+fix large all particletemplate/sphere 15485867 atom_type 1 density constant 1100 radius constant 1.1e-6 volume_limit 1e-20
+fix mix all particledistribution/discrete 32452843 2 small 0.5 large 0.5
+fix pack all insert/pack seed 49979687 distributiontemplate mix insert_every once overlapcheck yes all_in yes &
+    vel constant 0.0 0.0 -1.7 particles_in_region 20 region box
+fix integrate all nve/sphere
+thermo 500
+thermo_modify lost error
+run 1500
+"""
+
+
+@pytest.mark.parametrize("model", ["jkr", "jkr/simplified"])
+def test_spheres_inserted_of_one_type_meet_a_wall_of_a_type_without_a_template(plugin, tmp_path, model):
+    # LIGGGHTS answers for the smallest sphere of a type without a template with a radius of 1000.
+    (tmp_path / "in.deck").write_text(INSERTION.format(model=model))
+    run_deck(tmp_path / "in.deck", simulator=plugin, progress=False)
