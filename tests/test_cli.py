@@ -16,22 +16,11 @@ from scene_files import DAHNEKE, MESH, PAIR, edited, written
 
 from pyjkr import campaign, compare, report
 from pyjkr.cli import main
-from pyjkr.errors import RunError
-from pyjkr.run import Simulator, find_simulator
 
 # Fewer speeds: these tests are about files and statuses.
 SHORT = edited(DAHNEKE, ("[2.0, 3.2, 5.0]", "[2.0, 5.0]"), ("steps_per_collision = 200", "steps_per_collision = 500"))
 SHORTEST = edited(SHORT, ("[2.0, 5.0]", "[5.0]"), ("unmodified_ratios = [0.2]", ""))
 RESULTS = ["restitution.png", "result.json", "scene.toml", "table.csv", "table.txt", "velocity.png"]
-
-
-@pytest.fixture
-def plugin() -> Simulator:
-    """LIGGGHTS with the jkr styles; where it may be missing, the test is skipped, in continuous integration it fails."""
-    try:
-        return find_simulator()
-    except RunError as error:
-        pytest.fail(str(error)) if os.environ.get("CI") else pytest.skip(str(error))
 
 
 def run(*arguments: object) -> int:
