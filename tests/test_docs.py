@@ -277,7 +277,7 @@ def test_example_runs_in_liggghts_and_prints_what_the_page_shows(name: str, plug
 @pytest.mark.parametrize(
     ("style", "values"),
     [
-        ("model jkr tangential jkr rolling_friction krijt twisting on", 3 + 3 + 1 + 1 + 1),
+        ("model jkr tangential jkr rolling_friction krijt twisting on", 3 + 3 + 1 + 1 + 3 + 1),
         ("model jkr tangential history rolling_friction epsd2 eventCorrection off", 3 + 3 + 1),
         ("model jkr/simplified tangential no_history rolling_friction krijt", 3 + 1),
         ("model jkr/simplified", 1),

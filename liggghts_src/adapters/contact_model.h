@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "contact_batch.h"
+#include "instructions.h"
 #include "material_table.h"
 #include "mesh_edges.h"
 #include "normal_model_jkr.h"
@@ -78,7 +80,10 @@ class ContactModel : public lcm::ContactModelBase {
       simulator_.error->all(FLERR, (name() + ": " + (elastic_potential_ ? "computeElasticPotential" : "computeDissipatedEnergy") +
                          " is not available with the jkr models. Remove the keyword").c_str());
     normal_.postSettings(setup);
-    if constexpr (!Tangential::is_jkr) tangential_.postSettings(setup, this);
+    if constexpr (Tangential::is_jkr)
+      tangential_.postSettings(setup, normal_.event_correction());
+    else
+      tangential_.postSettings(setup, this);
     if constexpr (Rolling::is_krijt)
       rolling_.postSettings(setup);
     else
@@ -102,11 +107,29 @@ class ContactModel : public lcm::ContactModelBase {
 
   // Overlapping surfaces.
   void surfacesIntersect(Data& sidata, Forces& i, Forces& j) {
-    if (!sidata.mesh || takes_its_place(sidata)) contact(sidata, i, j);
+    if (sidata.mesh && !takes_its_place(sidata)) return;
+    const PairProperties pair = pair_of(sidata);
+    contact(sidata, pair, normal_state(sidata.radsum - sidata.r, pair), i, j);
+  }
+
+  // The same of a contact that the pair loop has gathered and solved with others.
+  void solved_contact(Data& sidata, const ContactBatch& batch, int place, Forces& i, Forces& j) {
+    const PairProperties pair{&materials_(sidata.itype, sidata.jtype), batch.effective_radius[place], batch.inverse_radius_root[place],
+                              sidata.meff};
+    contact(sidata, pair, normal_state_of_root(batch.overlap[place], batch.reduced_overlap[place], batch.root[place], pair), i, j);
+  }
+
+  // What the batch needs to know of a pair before it is solved.
+  void describe(ContactBatch& batch, int place, int type_i, int type_j, double radius_i, double radius_j) {
+    const double radius = radius_i * radius_j / batch.radius_sum[place];
+    const PairProperties pair{&materials_(type_i, type_j), radius, inverse_root_of(radius), 0.0};
+    batch.effective_radius[place] = radius;
+    batch.inverse_radius_root[place] = pair.inverse_radius_root;
+    batch.overlap_scale[place] = reduced_overlap_per_overlap(pair);
   }
 
   // Surfaces apart but near: a neck, a contact that has just broken, or nothing.
-  void surfacesClose(Data& sidata, Forces& i, Forces& j) {
+  PYJKR_RARE void surfacesClose(Data& sidata, Forces& i, Forces& j) {
     if (sidata.mesh && !takes_its_place(sidata)) return;
     double* const history = sidata.contact_history;
     const bool update_history = sidata.computeflag && sidata.shearupdate;
@@ -119,15 +142,18 @@ class ContactModel : public lcm::ContactModelBase {
     const PairProperties pair = pair_of(sidata);
     const double overlap = sidata.radsum - sidata.r;
     if (Law::has_neck && overlap > Law::breaking_overlap(pair)) {
-      contact(sidata, i, j);
+      contact(sidata, pair, normal_state(overlap, pair), i, j);
       sidata.has_force_update = true;
       return;
     }
     if (!update_history) return;
     if (normal_.event_correction()) {
-      const double vn = separation_speed(sidata);
-      const double force_n = normal_.settle(overlap, previous_overlap(sidata, overlap, vn), vn, pair);
-      add_force(force_n * load(sidata.en), sidata, i, j);
+      const Vec3 en = load(sidata.en);
+      ContactRecord record;
+      approach(sidata, en, record);
+      record.pair = pair;
+      const double normal_force = normal_.settle(overlap, previous_overlap(sidata, overlap, sidata.vn), sidata.vn, record);
+      add_loads(normal_force * en, sidata, en, record, i, j);
       sidata.has_force_update = true;
     }
     release(sidata);
@@ -158,19 +184,23 @@ class ContactModel : public lcm::ContactModelBase {
 
   static std::string name() { return std::string("model ") + Style::normal_name; }
 
-  // Radii repeat from contact to contact in all but continuous size distributions: the cube root is kept.
   PairProperties pair_of(const Data& sidata) {
     const double radius = sidata.is_wall ? sidata.radi : sidata.radi * sidata.radj / sidata.radsum;
+    return {&materials_(sidata.itype, sidata.jtype), radius, inverse_root_of(radius), sidata.meff};
+  }
+
+  // Radii repeat from contact to contact in all but continuous size distributions: the cube root is kept.
+  double inverse_root_of(double radius) {
     if (radius != last_radius_) {
       last_radius_ = radius;
       last_inverse_root_ = 1.0 / std::cbrt(radius);
     }
-    return {&materials_(sidata.itype, sidata.jtype), radius, last_inverse_root_, sidata.meff};
+    return last_inverse_root_;
   }
 
   // A contact with one triangle of a mesh: false where a neighbouring triangle has it. One that was on another triangle a
   // step ago goes on with its history.
-  bool takes_its_place(Data& sidata) {
+  PYJKR_RARE bool takes_its_place(Data& sidata) {
     const bool shadowed = mesh_edges_.is_beside_a_nearer_face(sidata);
     double* const history = sidata.contact_history;
     const int values = wall_->dnum();
@@ -205,25 +235,32 @@ class ContactModel : public lcm::ContactModelBase {
   static constexpr bool kOwnSlots = (Tangential::is_jkr || Tangential::is_off) && (Rolling::is_krijt || Rolling::is_off);
 
   // One function for the compiler: vectors stay in registers between the laws.
-  __attribute__((flatten)) void contact(Data& sidata, Forces& i, Forces& j) {
+  __attribute__((flatten)) void contact(Data& sidata, const PairProperties& pair, const NormalState& state, Forces& i, Forces& j) {
     ContactRecord record;
+    record.pair = pair;
+    record.normal = state;
     record.update_history = sidata.computeflag && sidata.shearupdate;
     const Vec3 en = load(sidata.en);
     // contact lists (compute pair/gran/local) are told all that the surface model knows
     if (!kOwnSlots || !record.update_history) surface_.surfacesIntersect(sidata, i, j);
     approach(sidata, en, record);
-    record.pair = pair_of(sidata);
     if (Law::has_neck && record.update_history && !normal_.has_contact(sidata.contact_history)) check_room(sidata, record.pair);
 
     const double normal_force = normal_.touch(
         sidata, [this](const Data& data) { return previous_overlap(data, data.deltan, data.vn); }, record);
     int flags = lcm::CONTACT_NORMAL_MODEL;
-    Vec3 force = normal_force * en;
-    Vec3 moment_i{0.0, 0.0, 0.0}, moment_j{0.0, 0.0, 0.0};
+    if constexpr (Tangential::is_jkr) flags |= lcm::CONTACT_TANGENTIAL_MODEL;
+    if constexpr (Rolling::is_krijt) flags |= lcm::CONTACT_ROLLING_MODEL;
+    if (sidata.contact_flags) *sidata.contact_flags |= flags;
+    add_loads(normal_force * en, sidata, en, record, i, j);
+    if constexpr (!kOwnSlots) stock_slots(sidata, normal_force, record, i, j);
+  }
 
+  // Normal force, sliding and rolling of our own slots: forces and moments on both partners.
+  void add_loads(Vec3 force, Data& sidata, const Vec3& en, ContactRecord& record, Forces& i, Forces& j) {
+    Vec3 moment_i{0.0, 0.0, 0.0}, moment_j{0.0, 0.0, 0.0};
     if constexpr (Tangential::is_jkr || Rolling::is_krijt) follow(sidata, en, record);
     if constexpr (Tangential::is_jkr) {
-      flags |= lcm::CONTACT_TANGENTIAL_MODEL;
       const Vec3 sliding = tangential_.force(record, sidata.contact_history);
       force = force + sliding;
       const Vec3 arm = cross(sliding, en);
@@ -231,20 +268,17 @@ class ContactModel : public lcm::ContactModelBase {
       moment_j = sidata.crj * arm;
     }
     if constexpr (Rolling::is_krijt) {
-      flags |= lcm::CONTACT_ROLLING_MODEL;
       const Vec3 rolling = rolling_.moment(record, sidata.contact_history);
       moment_i = moment_i + rolling;
       moment_j = moment_j - rolling;
     }
-    if (sidata.contact_flags) *sidata.contact_flags |= flags;
     add_force(force, sidata, i, j);
     accumulate(moment_i, i.delta_torque);
     if (!sidata.is_wall) accumulate(moment_j, j.delta_torque);
-    if constexpr (!kOwnSlots) stock_slots(sidata, normal_force, record, i, j);
   }
 
   // Tangential and rolling models of LIGGGHTS beside a jkr normal force. They know no neck.
-  void stock_slots(Data& sidata, double normal_force, const ContactRecord& record, Forces& i, Forces& j) {
+  PYJKR_RARE void stock_slots(Data& sidata, double normal_force, const ContactRecord& record, Forces& i, Forces& j) {
     sidata.kn = sidata.deltan > 0.0 ? record.normal.elastic_force / sidata.deltan : 0.0;
     sidata.kt = record.stiffness.tangential_stiffness;
     sidata.gammat = record.stiffness.tangential_damping;
@@ -282,11 +316,15 @@ class ContactModel : public lcm::ContactModelBase {
     const double dt = simulator_.update->dt;
     record.pull_off_force_original = pull_off_force_original(record.pair);
     record.normal_i_to_j = -en;
-    record.slip_velocity = record.center_velocity + cross(en, sidata.cri * spin_i + sidata.crj * spin_j);
+    // r_i omega_i + r_j omega_j by sum and difference: the same to the last bit where i and j change places, with fused
+    // multiply-add too
+    const Vec3 spin_sum = spin_i + spin_j;
     record.relative_spin = spin_i - spin_j;
+    const Vec3 surface = 0.5 * (sidata.cri + sidata.crj) * spin_sum + 0.5 * (sidata.cri - sidata.crj) * record.relative_spin;
+    record.slip_velocity = record.center_velocity + cross(en, surface);
     record.size_asymmetry = sidata.is_wall ? 1.0 : (sidata.radj - sidata.radi) / sidata.radsum;
     const double turn_rate = sidata.is_wall ? 0.0 : dt * sidata.rinv;
-    record.turn = turn_of(en, turn_rate * record.center_velocity, 0.5 * dt * dot(spin_i + spin_j, en));
+    record.turn = turn_of(en, turn_rate * record.center_velocity, 0.5 * dt * dot(spin_sum, en));
     if constexpr (Rolling::is_krijt) {
       if (rolling_.needs_inertia()) record.reduced_inertia = reduced_inertia(sidata);
     }
@@ -323,7 +361,7 @@ class ContactModel : public lcm::ContactModelBase {
   }
 
   // No contact: nothing is remembered.
-  void release(Data& sidata) {
+  PYJKR_RARE void release(Data& sidata) {
     if (sidata.contact_flags)
       *sidata.contact_flags &= ~(lcm::CONTACT_NORMAL_MODEL | lcm::CONTACT_TANGENTIAL_MODEL | lcm::CONTACT_ROLLING_MODEL);
     if (!sidata.contact_history || !(sidata.computeflag && sidata.shearupdate)) return;
@@ -367,7 +405,7 @@ class ContactModel : public lcm::ContactModelBase {
   }
 
   // Spheres smaller than any known before the run may come in later: their necks must still fit the band.
-  void check_room(const Data& sidata, const PairProperties& pair) const {
+  PYJKR_RARE void check_room(const Data& sidata, const PairProperties& pair) const {
     const double neck = -rupture_overlap(pair);
     const double room = (simulator_.neighbor->contactDistanceFactor - 1.0) * sidata.radsum;
     if (neck > room)

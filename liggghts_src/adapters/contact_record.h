@@ -14,7 +14,10 @@ struct ContactRecord {
   PairProperties pair;
   NormalState normal;
   ContactStiffness stiffness;
+  double weight;             // of sliding and rolling loads: 1, or what the step of the make or the break leaves of them
   double time_in_contact;    // of this step [s]: the time step, less in the step a contact is made
+  double time_step;
+  bool is_new;               // no step before this one to carry a speed from
   bool update_history;
   // filled only where a jkr or krijt slot needs them
   double pull_off_force_original;

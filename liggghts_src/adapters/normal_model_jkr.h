@@ -44,17 +44,18 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
     if (speed_slot_ >= 0) history[speed_slot_] = 0.0;
   }
 
-  // Force on i along e (from j to i) of a contact that exists at the end of this step. Fills the record.
+  // Force on i along e (from j to i) of a contact that exists at the end of this step, its pair and normal state given in
+  // the record. Fills the rest of it.
   // `previous` gives the overlap one step ago; asked for only where the contact may be new.
   template <class PreviousOverlap>
   double touch(SurfacesIntersectData& sidata, const PreviousOverlap& previous, ContactRecord& record) const {
     double* const history = sidata.contact_history;
     const PairProperties& pair = record.pair;
     const double dt = update->dt;
-    record.normal = normal_state(sidata.deltan, pair);
     record.stiffness = Law::stiffness(sidata.deltan, record.normal, pair);
     if (!tangential_damping_) record.stiffness.tangential_damping = 0.0;
-    record.time_in_contact = dt;
+    record.time_in_contact = record.time_step = dt;
+    record.weight = 1.0;
 
     // At setup and for compute pair/gran/local LIGGGHTS hands over full-step velocities: nothing to correct.
     if (!record.update_history) return record.normal.elastic_force - record.stiffness.damping * sidata.vn;
@@ -64,6 +65,7 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
 
     // a contact that was there a step ago carries a speed; one that LIGGGHTS has only seen at setup is told by its path
     const bool maybe_new = !known && sidata.vn < 0.0 && history[speed_slot_] == 0.0;
+    record.is_new = history[speed_slot_] == 0.0;
     const double before = maybe_new ? previous(sidata) : 1.0;
     double force;
     if (maybe_new && before <= 0.0) {
@@ -71,6 +73,8 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
       const double theta = fraction_after_make(step);
       record.time_in_contact = theta * dt;
       force = force_of_make<Law>(step, theta, record.normal, pair);
+      record.weight = weight_of_make<Law>(theta);
+      if (tangential_damping_) record.stiffness.tangential_damping = tangential_damping_of_make<Law>(step, theta, record.stiffness, pair);
     } else {
       const double carried = history[speed_slot_] != 0.0 ? history[speed_slot_] : sidata.vn;
       force = damped_force(record.normal.elastic_force, record.stiffness.damping, sidata.vn, carried, dt, pair.effective_mass);
@@ -79,9 +83,16 @@ class NormalModelJkr : protected LAMMPS_NS::Pointers {
     return force;
   }
 
-  // Force on i along e that settles the account of a contact that broke within this step.
-  double settle(double overlap, double previous_overlap, double separation_speed, const PairProperties& pair) const {
-    return force_of_break<Law>({overlap, previous_overlap, separation_speed, update->dt}, pair);
+  // Force on i along e that settles the account of a contact that broke within this step. Fills the record with the
+  // contact as it was when it broke.
+  double settle(double overlap, double previous_overlap, double separation_speed, ContactRecord& record) const {
+    const NormalStep step{overlap, previous_overlap, separation_speed, update->dt};
+    record.update_history = false;
+    record.normal = state_at_break<Law>(record.pair);
+    record.stiffness = Law::stiffness(Law::breaking_overlap(record.pair), record.normal, record.pair);
+    if (!tangential_damping_) record.stiffness.tangential_damping = 0.0;
+    record.weight = weight_of_break<Law>(step, record.pair);
+    return force_of_break<Law>(step, record.pair);
   }
 
  private:

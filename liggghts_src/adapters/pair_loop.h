@@ -10,9 +10,52 @@
 #include <vector>
 
 #include "../kernels/vec3.h"
+#include "instructions.h"
 #include "liggghts_headers.h"
 
 namespace pyjkr {
+
+// Neighbours of the next sphere that are asked for ahead.
+constexpr int kAhead = 8;
+
+// Positions, velocities and forces of all spheres. LIGGGHTS keeps every array in one block behind its table of rows, so
+// the table need not be read. What the next contacts need is asked for early: waiting for memory is what a contact costs.
+class Spheres {
+ public:
+  const double* const radius;
+  const int* const type;
+  const int local;
+
+  explicit Spheres(const LAMMPS_NS::Atom& atom)
+      : radius(atom.radius), type(atom.type), local(atom.nlocal), x_(block(atom.x)), v_(block(atom.v)), omega_(block(atom.omega)),
+        f_(block(atom.f)), torque_(block(atom.torque)) {}
+
+  double* x(int i) const { return x_ + 3 * static_cast<size_t>(i); }
+  double* v(int i) const { return v_ + 3 * static_cast<size_t>(i); }
+  double* omega(int i) const { return omega_ + 3 * static_cast<size_t>(i); }
+  double* f(int i) const { return f_ + 3 * static_cast<size_t>(i); }
+  double* torque(int i) const { return torque_ + 3 * static_cast<size_t>(i); }
+
+  void fetch_places(const int* neighbours, int count) const {
+    for (int k = 0; k < count && k < kAhead; ++k) __builtin_prefetch(x(neighbours[k] & NEIGHMASK));
+  }
+
+  void fetch_motion(int i) const {
+    __builtin_prefetch(v(i));
+    __builtin_prefetch(omega(i));
+    __builtin_prefetch(f(i), 1);
+    __builtin_prefetch(torque(i), 1);
+  }
+
+ private:
+  double* const x_;
+  double* const v_;
+  double* const omega_;
+  double* const f_;
+  double* const torque_;
+
+  static double* block(double** rows) { return rows ? rows[0] : nullptr; }
+};
 
 template <class Model>
 class PairLoop : public LIGGGHTS::PairStyles::IGranularPairStyle {
@@ -54,91 +97,136 @@ class PairLoop : public LIGGGHTS::PairStyles::IGranularPairStyle {
   bool contact_match(const std::string kind, const std::string name) override { return model_.contact_match(kind, name); }
 
   void compute_force(PairGran* pair, int eflag, int vflag, int addflag) override {
+    if (instructions_ == Instructions::avx2)
+      loop_with_avx2(pair, eflag, vflag, addflag);
+    else
+      loop(pair, eflag, vflag, addflag);
+  }
+
+ private:
+  Simulator simulator_;
+  Model model_;
+  ContactBatch batch_;
+  const Instructions instructions_ = instructions_of_this_machine();
+
+  PYJKR_WITH_AVX2 void loop_with_avx2(PairGran* pair, int eflag, int vflag, int addflag) { loop(pair, eflag, vflag, addflag); }
+
+  void loop(PairGran* pair, int eflag, int vflag, int addflag) {
     if (eflag || vflag)
       pair->ev_setup(eflag, vflag);
     else
       pair->evflag = pair->vflag_fdotr = 0;
 
-    LAMMPS_NS::Atom& atom = *simulator_.atom;
     const LAMMPS_NS::NeighList& list = *pair->list;
+    const Spheres all(*simulator_.atom);
     const LAMMPS_NS::NeighList* const kept = pair->listgranhistory;
     const int history_values = pair->dnum();
     const bool watched = is_watched(pair, addflag);
     const std::vector<LAMMPS_NS::FixInsertStreamPredefined*> streams = streams_with_history();
 
-    Data data;
-    data.is_wall = false;
-    data.computeflag = pair->computeflag();
-    data.shearupdate = pair->shearupdate();
+    ContactBatch& batch = batch_;
+    batch.count = 0;
     for (int slot = 0; slot < list.inum; ++slot) {
       const int i = list.ilist[slot];
-      const Vec3 position = load(atom.x[i]);
-      const double radius = atom.radius[i];
+      const int* const neighbours = list.firstneigh[i];
+      const int count = list.numneigh[i];
+      if (slot + 1 < list.inum) all.fetch_places(list.firstneigh[list.ilist[slot + 1]], list.numneigh[list.ilist[slot + 1]]);
+      const Vec3 position = load(all.x(i));
+      const double radius = all.radius[i];
       int* const flags = kept ? kept->firstneigh[i] : nullptr;
       double* const histories = kept ? kept->firstdouble[i] : nullptr;
-      data.i = i;
-      data.radi = radius;
-      data.itype = atom.type[i];
-      data.v_i = atom.v[i];
-      data.omega_i = atom.omega[i];
-      Vec3 force{0.0, 0.0, 0.0}, torque{0.0, 0.0, 0.0};
-      for (int k = 0; k < list.numneigh[i]; ++k) {
-        const int j = list.firstneigh[i][k] & NEIGHMASK;
+      for (int k = 0; k < count; ++k) {
+        const int j = neighbours[k] & NEIGHMASK;
         double* const history = histories ? histories + static_cast<size_t>(history_values) * k : nullptr;
         for (auto* stream : streams) stream->copy_history(i, j, history);
-        const Vec3 apart = position - load(atom.x[j]);
+        const Vec3 apart = position - load(all.x(j));
         const double square = dot(apart, apart);
-        const double sum = radius + atom.radius[j];
+        const double sum = radius + all.radius[j];
         const bool touching = square < sum * sum;
-        if (!touching && !(flags && flags[k])) continue;
-
-        data.j = j;
-        data.radj = atom.radius[j];
-        data.radsum = sum;
-        data.rsq = square;
-        store(apart, data.delta);
-        data.jtype = atom.type[j];
-        data.v_j = atom.v[j];
-        data.omega_j = atom.omega[j];
-        data.contact_flags = flags ? flags + k : nullptr;
-        data.contact_history = history;
-        set_masses(data, pair);
-        data.r = std::sqrt(square);
-        data.rinv = 1.0 / data.r;
-        store(data.rinv * apart, data.en);
-
-        Forces on_i, on_j;
-        data.has_force_update = touching;
-        if (touching)
-          model_.surfacesIntersect(data, on_i, on_j);
-        else
-          model_.surfacesClose(data, on_i, on_j);
-        if (!data.has_force_update) continue;
-
-        if (data.computeflag) {
-          force = force + load(on_i.delta_F);
-          torque = torque + load(on_i.delta_torque);
-          if (simulator_.force->newton_pair || j < atom.nlocal) {
-            const double share = pair->relax(j);
-            accumulate(share * load(on_j.delta_F), atom.f[j]);
-            accumulate(share * load(on_j.delta_torque), atom.torque[j]);
-          }
-        }
-        if (watched) tell(pair, addflag, data, on_i, on_j);
+        const int place = batch.count;
+        batch.i[place] = i;
+        batch.j[place] = j;
+        batch.flags[place] = flags ? flags + k : nullptr;
+        batch.history[place] = history;
+        batch.touching[place] = touching;
+        batch.apart[0][place] = apart.x;
+        batch.apart[1][place] = apart.y;
+        batch.apart[2][place] = apart.z;
+        batch.square[place] = square;
+        batch.radius_sum[place] = sum;
+        // written anyway and kept if wanted: which pairs touch is not to be guessed
+        batch.count += touching | (flags && flags[k]);
+        if (batch.count == ContactBatch::kSize) evaluate(batch, all, pair, addflag, watched);
       }
-      const double share = pair->relax(i);
-      accumulate(share * force, atom.f[i]);
-      accumulate(share * torque, atom.torque[i]);
     }
+    evaluate(batch, all, pair, addflag, watched);
 
     if (pair->cpl() && addflag) pair->cpl_pair_finalize();
     if (pair->storeContactForces()) pair->fix_contact_forces()->do_forward_comm();
     if (pair->storeContactForcesStress()) pair->fix_contact_forces_stress()->do_forward_comm();
   }
 
- private:
-  Simulator simulator_;
-  Model model_;
+  // The law of all contacts of a batch, in the order in which they were gathered.
+  void evaluate(ContactBatch& batch, const Spheres& all, PairGran* pair, int addflag, bool watched) {
+    for (int place = 0; place < batch.count; ++place) {
+      const int i = batch.i[place], j = batch.j[place];
+      all.fetch_motion(i);
+      all.fetch_motion(j);
+      model_.describe(batch, place, all.type[i], all.type[j], all.radius[i], all.radius[j]);
+    }
+    batch.solve();
+
+    Data data;
+    data.is_wall = false;
+    data.computeflag = pair->computeflag();
+    data.shearupdate = pair->shearupdate();
+    for (int place = 0; place < batch.count; ++place) {
+      const int i = batch.i[place], j = batch.j[place];
+      const bool touching = batch.touching[place];
+      data.i = i;
+      data.j = j;
+      data.radi = all.radius[i];
+      data.radj = all.radius[j];
+      data.radsum = batch.radius_sum[place];
+      data.rsq = batch.square[place];
+      data.r = batch.distance[place];
+      data.rinv = batch.inverse_distance[place];
+      for (int axis = 0; axis < 3; ++axis) {
+        data.delta[axis] = batch.apart[axis][place];
+        data.en[axis] = batch.normal[axis][place];
+      }
+      data.itype = all.type[i];
+      data.jtype = all.type[j];
+      data.v_i = all.v(i);
+      data.v_j = all.v(j);
+      data.omega_i = all.omega(i);
+      data.omega_j = all.omega(j);
+      data.contact_flags = batch.flags[place];
+      data.contact_history = batch.history[place];
+      set_masses(data, pair);
+
+      Forces on_i, on_j;
+      data.has_force_update = touching;
+      if (touching)
+        model_.solved_contact(data, batch, place, on_i, on_j);
+      else
+        model_.surfacesClose(data, on_i, on_j);
+      if (!data.has_force_update) continue;
+
+      if (data.computeflag) {
+        const double share_i = pair->relax(i);
+        accumulate(share_i * load(on_i.delta_F), all.f(i));
+        accumulate(share_i * load(on_i.delta_torque), all.torque(i));
+        if (simulator_.force->newton_pair || j < all.local) {
+          const double share_j = pair->relax(j);
+          accumulate(share_j * load(on_j.delta_F), all.f(j));
+          accumulate(share_j * load(on_j.delta_torque), all.torque(j));
+        }
+      }
+      if (watched) tell(pair, addflag, data, on_i, on_j);
+    }
+    batch.count = 0;
+  }
 
   // Effective mass; of a member of a rigid body its body's; with a frozen partner that of the other.
   void set_masses(Data& data, PairGran* pair) const {
@@ -162,7 +250,7 @@ class PairLoop : public LIGGGHTS::PairStyles::IGranularPairStyle {
   }
 
   // Contact lists, virial, stored contact forces and their sum: what computes and fixes have asked to be told.
-  void tell(PairGran* pair, int addflag, Data& data, Forces& on_i, Forces& on_j) const {
+  PYJKR_RARE void tell(PairGran* pair, int addflag, Data& data, Forces& on_i, Forces& on_j) const {
     const LAMMPS_NS::Atom& atom = *simulator_.atom;
     const int i = data.i, j = data.j, newton = simulator_.force->newton_pair;
     if (data.computeflag && pair->store_sum_normal_force()) {
@@ -198,7 +286,7 @@ class PairLoop : public LIGGGHTS::PairStyles::IGranularPairStyle {
   }
 
   // Spheres that fix insert/stream/predefined has just put in bring the history of their contacts along.
-  std::vector<LAMMPS_NS::FixInsertStreamPredefined*> streams_with_history() const {
+  PYJKR_RARE std::vector<LAMMPS_NS::FixInsertStreamPredefined*> streams_with_history() const {
     std::vector<LAMMPS_NS::FixInsertStreamPredefined*> streams;
     const char* const style = "insert/stream/predefined";
     for (int k = 0; k < simulator_.modify->n_fixes_style(style); ++k) {

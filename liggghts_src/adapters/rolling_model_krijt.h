@@ -68,7 +68,9 @@ class RollingModelKrijt {
     const double damping = rolling_damping_ == 0.0 ? 0.0
                                                    : rolling_damping(rolling_damping_, stiffness, record.reduced_inertia,
                                                                      record.pair.effective_radius);
-    return rolling_moment(displacement, velocity, record.normal_i_to_j, stiffness, damping);
+    // weighted here, not after: a product that both partners add or subtract would be rounded differently for either
+    // where multiply and add are fused
+    return rolling_moment(displacement, velocity, record.normal_i_to_j, record.weight * stiffness, record.weight * damping);
   }
 
   Vec3 twisting(const ContactRecord& record, double* history) const {
@@ -83,7 +85,7 @@ class RollingModelKrijt {
     const TwistingStep step = twist(angle, spin, 0.5 * record.stiffness.tangential_stiffness * a * a,
                                     0.5 * record.stiffness.tangential_damping * a * a, limit);
     if (record.update_history) history[angle_slot_] = step.angle;
-    return step.moment * record.normal_i_to_j;
+    return (record.weight * step.moment) * record.normal_i_to_j;
   }
 
   LAMMPS_NS::LAMMPS* lmp_;

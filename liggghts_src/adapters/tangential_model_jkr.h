@@ -22,7 +22,17 @@ class TangentialModelJkr {
     history->add_history_value("sliding_displacement_z", "1");
   }
 
-  void forget(double* history) const { history[slot_] = history[slot_ + 1] = history[slot_ + 2] = 0.0; }
+  void postSettings(LIGGGHTS::IContactHistorySetup* history, bool event_correction) {
+    if (!event_correction) return;
+    carried_slot_ = history->add_history_value("carried_slip_x", "1");
+    history->add_history_value("carried_slip_y", "1");
+    history->add_history_value("carried_slip_z", "1");
+  }
+
+  void forget(double* history) const {
+    store({0.0, 0.0, 0.0}, history + slot_);
+    if (carried_slot_ >= 0) store({0.0, 0.0, 0.0}, history + carried_slot_);
+  }
 
   // Force on i; the surface model's lever arms turn it into moments.
   Vec3 force(const ContactRecord& record, double* history) const {
@@ -31,14 +41,25 @@ class TangentialModelJkr {
       displacement = turned(displacement, record.turn) + record.time_in_contact * record.slip_velocity;
     const double limit = sliding_limit(record.normal.elastic_force, record.pull_off_force_original,
                                        record.pair.material->friction_coefficient);
-    const SlidingStep step = slide(displacement, record.slip_velocity, record.stiffness.tangential_stiffness,
-                                   record.stiffness.tangential_damping, limit);
-    if (record.update_history) store(step.displacement, history + slot_);
-    return step.force;
+    if (!record.update_history || carried_slot_ < 0) {
+      const SlidingStep step = slide(displacement, record.slip_velocity, record.stiffness.tangential_stiffness,
+                                     record.stiffness.tangential_damping, limit);
+      if (record.update_history) store(step.displacement, history + slot_);
+      return record.weight * step.force;
+    }
+    const double step_per_mass = 3.5 * (record.time_step / record.pair.effective_mass);
+    const Vec3 carried = record.is_new ? record.slip_velocity : turned(load(history + carried_slot_), record.turn);
+    const SlipAtEnd slip = slip_at_end(record.slip_velocity, carried, record.stiffness.tangential_damping, step_per_mass);
+    const SlidingStep step = slide(displacement, slip, record.stiffness.tangential_stiffness, record.stiffness.tangential_damping, limit);
+    const Vec3 force = record.weight * step.force;
+    store(step.displacement, history + slot_);
+    store(record.slip_velocity + step_per_mass * force, history + carried_slot_);
+    return force;
   }
 
  private:
   int slot_;
+  int carried_slot_ = -1;
 };
 
 }  // namespace pyjkr

@@ -109,6 +109,37 @@ inline double force_of_make(const NormalStep& step, double theta, const NormalSt
   return damped_force(elastic, damping, step.separation_speed, step.separation_speed, dt, mass);
 }
 
+// Weight of the sliding and rolling loads in the step in which a contact was made: they begin at once where a contact has
+// a size from the start (p = 0), and grow from nothing otherwise.
+template <class Law>
+inline double weight_of_make(double theta) {
+  return Law::has_neck ? 0.5 + theta : 1.0;
+}
+
+// eta_T of that step: as eta_N, it goes as t^(1/4) where the overlap does (p = 1/4).
+template <class Law>
+inline double tangential_damping_of_make(const NormalStep& step, double theta, const ContactStiffness& stiffness,
+                                         const PairProperties& pair) {
+  if (Law::has_neck) return stiffness.tangential_damping;
+  const double whole_step = Law::stiffness(step.overlap - step.previous_overlap, NormalState{}, pair).tangential_damping;
+  return whole_step * quarter_power_weight(theta);
+}
+
+// What the step of the break leaves of the loads that the contact had when it broke.
+template <class Law>
+inline double weight_of_break(const NormalStep& step, const PairProperties& pair) {
+  if (!Law::has_neck) return 0.0;
+  return fraction_before_break(step, Law::breaking_overlap(pair), Law::breaking_force(pair), pair.effective_mass) - 0.5;
+}
+
+// The contact at the moment it breaks.
+template <class Law>
+inline NormalState state_at_break(const PairProperties& pair) {
+  const double a1 = contact_radius_at_zero_overlap(pair);
+  if (!Law::has_neck) return {a1, 1.0, Law::breaking_force(pair)};
+  return {a1 * kRuptureRoot * kRuptureRoot, kRuptureRoot, Law::breaking_force(pair)};
+}
+
 // Force that carries the impulse left over by the step in which a contact broke.
 template <class Law>
 inline double force_of_break(const NormalStep& step, const PairProperties& pair) {

@@ -27,7 +27,6 @@ struct NormalState {
 // v = (t + 1.2)^(-1/2), is off by 9e-7 at most (own fit, checked by the tests); one Halley step leaves round-off.
 inline double contact_radius_root(double reduced_overlap) {
   const double square = reduced_overlap - kRuptureOverlap;
-  if (square <= 0.0) return kRuptureRoot;  // at or past the rupture by round-off of the overlap
   const double t = std::sqrt(square);
   // square root and division side by side, and the polynomial in pairs: less to wait for
   const double v = std::sqrt(t + 1.2) * (1.0 / (t + 1.2));
@@ -42,7 +41,7 @@ inline double contact_radius_root(double reduced_overlap) {
   const double slope = w * (w * (4.0 * w + 12.0 * kRuptureRoot) + 2.0 * c2);
   const double curvature = 12.0 * u * u;
   w -= 2.0 * residual * slope / (2.0 * slope * slope - residual * curvature);
-  return w + kRuptureRoot;
+  return square > 0.0 ? w + kRuptureRoot : kRuptureRoot;  // at or past the rupture by round-off of the overlap
 }
 
 // Overlap at which a stretched neck snaps under prescribed separation [m], negative. Chen 2019 eq. 6:
@@ -55,21 +54,25 @@ inline double rupture_overlap(const PairProperties& pair) {
 // Above this reduced overlap adhesion changes the force by D^(-3/4) = 1e-18 of itself: Hertz to round-off.
 constexpr double kNoAdhesionLeft = 1e24;
 
-// Contact radius and elastic force at an overlap, valid from the rupture overlap upwards.
-inline NormalState normal_state(double overlap, const PairProperties& pair) {
+// Contact radius and elastic force at an overlap whose root is known; without adhesion the root is not looked at.
+inline NormalState normal_state_of_root(double overlap, double reduced_overlap, double root, const PairProperties& pair) {
   const PairMaterial& material = *pair.material;
   const double radius = pair.effective_radius;
-  const double reduced_overlap = overlap * reduced_overlap_per_overlap(pair);
   // without surface energy the reduced overlap is infinite, or not a number at zero overlap
   if (!(reduced_overlap <= kNoAdhesionLeft)) {
     const double a = std::sqrt(radius * overlap);
     return {a, 0.0, 4.0 / 3.0 * material.effective_modulus * a * overlap};
   }
-  const double u = contact_radius_root(reduced_overlap);
-  const double cube = u * u * u;
+  const double cube = root * root * root;
   // eqs 8 and 9 together: F = 4 E a^3/(3 R) - 4 sqrt(pi gamma E a^3)
   const double force = 8.0 * kPi * material.surface_energy * radius * cube * (2.0 / 3.0 * cube - 1.0);
-  return {contact_radius_at_zero_overlap(pair) * u * u, u, force};
+  return {contact_radius_at_zero_overlap(pair) * root * root, root, force};
+}
+
+// Contact radius and elastic force at an overlap, valid from the rupture overlap upwards.
+inline NormalState normal_state(double overlap, const PairProperties& pair) {
+  const double reduced_overlap = overlap * reduced_overlap_per_overlap(pair);
+  return normal_state_of_root(overlap, reduced_overlap, contact_radius_root(reduced_overlap), pair);
 }
 
 // (a/a_0)^(3/2) of the normal law; a_0^3 = (9/4) a_1^3.

@@ -54,7 +54,7 @@ _CONTACT_IDENTIFIERS = frozenset({"id1", "id2", "periodic", "mesh", "triangle", 
 _FIRST_ROUNDED_IDENTIFIER = 10**6
 
 # What `add_history_value` of the styles asks for, in the order in which LIGGGHTS 3.8 and the plug-in call it: the
-# constructors of the sliding and of the rolling model, then `postSettings` of the normal and of the rolling model.
+# constructors of the sliding and of the rolling model, then `postSettings` of the normal, the sliding and the rolling one.
 _SLIDING_HISTORY = {
     "off": (),
     "no_history": (),
@@ -87,7 +87,7 @@ def jkr_history(
     tuple of str
         `sliding_displacement_*` [m], of particle 1 past particle 2; `rolling_displacement_*` [m] with `krijt`, or
         `rolling_moment_*` [N m] with `epsd2`; `in_contact`, 1 while the contact or its neck holds;
-        `carried_speed` [m/s], internal to the event correction; `twisting_angle` [rad].
+        `carried_speed` and `carried_slip_*` [m/s], internal to the event correction; `twisting_angle` [rad].
 
     Raises
     ------
@@ -108,6 +108,7 @@ def jkr_history(
         *_ROLLING_HISTORY[rolling_friction],
         *_NORMAL_HISTORY[normal],
         *(("carried_speed",) if event_correction else ()),
+        *(_vector("carried_slip") if event_correction and tangential == "jkr" else ()),
         *(("twisting_angle",) if twisting else ()),
     )
 
