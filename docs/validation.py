@@ -129,6 +129,7 @@ def _section(case: Case) -> Iterator[str]:
     yield f"{result['points']} points{rows}, {took}. Parameters and sources: `cases/{case.name}/README.md`.\n"
     for name in case.pictures:
         yield f"![{cell(result['title'])}](figures/{name})\n"
+    yield from _table(result.get("summary"))
     if result["checks"]:
         yield "| check | measured | wanted | |"
         yield "| --- | --- | --- | --- |"
@@ -136,6 +137,16 @@ def _section(case: Case) -> Iterator[str]:
         verdict = "holds" if check["holds"] else "**does not hold**"
         yield f"| {cell(check['name'])} | {cell(measured(check['measured']))} | {cell(check['wanted'])} | {verdict} |"
     yield ""
+
+
+def _table(summary: dict[str, Any] | None) -> Iterator[str]:
+    """The summary of a study that has one."""
+    if summary:
+        yield "| " + " | ".join(cell(str(name)) for name in summary["columns"]) + " |"
+        yield "| --- " * len(summary["columns"]) + "|"
+        for row in summary["data"]:
+            yield "| " + " | ".join(cell(value if isinstance(value, str) else f"{value:g}") for value in row) + " |"
+        yield ""
 
 
 def measured(value: float | str | None) -> str:
@@ -174,7 +185,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--cases", type=Path, default=ROOT / "cases", metavar="DIR", help="default: cases")
     default = ROOT / "docs" / "validation.md"
     parser.add_argument("-o", "--output", type=Path, default=default, metavar="FILE", help="default: docs/validation.md")
+    parser.add_argument("--list", action="store_true", help="print the names of the cases and write nothing")
     options = parser.parse_args(arguments)
+    if options.list:
+        print(*(name for name in CASES if (options.cases / name / "sweep.toml").is_file()))
+        return 0
     try:
         cases = read(options.cases, options.results)
     except IncompleteError as error:

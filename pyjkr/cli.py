@@ -1,4 +1,4 @@
-"""Command line: arguments and dispatch. Results go to stdout, progress and messages to stderr.
+"""Command line: what the verbs do. Results go to stdout, progress and messages to stderr.
 
 Exit status: 0 done, 1 outside tolerance, 2 usage or scene, 3 simulator failed, 130 interrupted.
 """
@@ -13,17 +13,17 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from pyjkr import arguments as arguments_of
 from pyjkr import resources, scaling
 from pyjkr.errors import PyjkrError, RunError, SceneError, ToleranceError
 
 SCENE_COPY = "scene.toml"
 INTERRUPTED = 130
-FORMAT = argparse.RawDescriptionHelpFormatter
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def main(words: Sequence[str] | None = None) -> int:
     """Run one verb; return the exit status."""
-    options = _parser().parse_args(arguments)
+    options = arguments_of.parser(ACTIONS).parse_args(words)
     try:
         options.verb(options)
         sys.stdout.flush()
@@ -44,115 +44,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="pyjkr",
-        formatter_class=FORMAT,
-        description="Adhesive impacts of small spheres at reduced stiffness: plans, LIGGGHTS decks, runs, comparison.",
-        epilog="SCENE is a TOML file, or the name of a shipped case: " + ", ".join(resources.shipped_cases())
-        + ".\n\nexample:\n  pyjkr run dahneke -o results/dahneke",
-    )  # fmt: skip
-    verbs = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
-    _add_scale(verbs)
-    _add_plan(verbs)
-    _add_deck(verbs)
-    _add_run(verbs)
-    _add_compare(verbs)
-    _add_cost(verbs)
-    return parser
-
-
-def _add(verbs, name: str, action, summary: str, files: str, example: str) -> argparse.ArgumentParser:
-    parser = verbs.add_parser(
-        name, help=summary, formatter_class=FORMAT, description=f"{summary}\n\n{files}", epilog=f"example:\n  {example}"
-    )
-    parser.set_defaults(verb=action)
-    return parser
-
-
-def _add_scale(verbs) -> None:
-    parser = _add(
-        verbs, "scale", _scale, "Print the surface energy to use at a reduced stiffness (Haervig 2017, eq. 24).",
-        "Reads a scene file, or the options; writes a table to stdout.",
-        "pyjkr scale --modulus 271e6 --surface-energy 0.11 --ratio 0.1 0.01",
-    )  # fmt: skip
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help="take the values from a scene")
-    parser.add_argument("--modulus", type=float, metavar="E", help="effective Young's modulus [Pa]")
-    parser.add_argument("--surface-energy", type=float, metavar="GAMMA", help="surface energy of one surface [J/m2]")
-    parser.add_argument("--ratio", type=float, nargs="+", metavar="Q", help="E_mod/E")
-
-
-def _add_plan(verbs) -> None:
-    parser = _add(
-        verbs, "plan", _plan, "Print what would be simulated: cases, time steps, overlaps, warnings.",
-        "Reads the scene; writes a table to stdout.", "pyjkr plan dahneke",
-    )  # fmt: skip
-    parser.add_argument("scene", metavar="SCENE")
-
-
-def _add_deck(verbs) -> None:
-    parser = _add(
-        verbs, "deck", _deck, "Render the LIGGGHTS decks of a scene.",
-        "Reads the scene; writes DIR/<case>/in.deck and prints their paths, or with --case prints one deck.",
-        "pyjkr deck dahneke --case 5.0mps_q0.1_scaled",
-    )  # fmt: skip
-    parser.add_argument("scene", metavar="SCENE")
-    target = parser.add_mutually_exclusive_group(required=True)
-    target.add_argument("-o", "--output", type=Path, metavar="DIR", help="write all decks here")
-    target.add_argument("--case", metavar="LABEL", help="print the deck of one case, as `pyjkr plan` names it")
-
-
-def _add_run(verbs) -> None:
-    parser = _add(
-        verbs, "run", _run, "Run every case of a scene and compare it with the oracle.",
-        "Reads the scene; writes DIR/<case>/ (deck, log, dump), DIR/result.json, table.csv, table.txt and PNG figures,\n"
-        "and the table to stdout. Finished cases are not run again. Exit status 1 where a tolerance is exceeded.",
-        "pyjkr run dahneke -o results/dahneke",
-    )  # fmt: skip
-    parser.add_argument("scene", metavar="SCENE")
-    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="default: results/<name of the scene>")
-    parser.add_argument("--engine", choices=("liggghts", "oracle"), help="default: liggghts where it is found, else oracle")
-    parser.add_argument("--np", type=_ranks, default=1, metavar="N", help="MPI processes (default: 1)")
-    parser.add_argument("--no-progress", action="store_true", help="no progress bar; it is shown on a terminal only")
-    parser.add_argument("--dry-run", action="store_true", help="print decks and commands, run nothing, write nothing")
-
-
-def _add_compare(verbs) -> None:
-    parser = _add(
-        verbs, "compare", _compare, "Compare finished runs with the oracle once more.",
-        "Reads DIR/scene.toml and the dumps in DIR, as `pyjkr run` left them; writes the result files anew,\n"
-        "and the table to stdout.",
-        "pyjkr compare results/dahneke",
-    )  # fmt: skip
-    parser.add_argument("directory", type=Path, metavar="DIR")
-
-
-def _add_cost(verbs) -> None:
-    parser = _add(
-        verbs, "cost", _cost, "Measure what accuracy costs in time: steps, event correction, stiffness, effects.",
-        "Reads the scene; runs LIGGGHTS many times and writes DIR/cost.csv, cost.json, PNG figures, the runs in DIR/runs/,\n"
-        "and tables to stdout. Finished runs are not repeated. Exit status 1 where a promised accuracy is missed.",
-        "pyjkr cost dahneke --quick -o results/dahneke-cost",
-    )  # fmt: skip
-    parser.add_argument("scene", metavar="SCENE")
-    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="default: results/<name of the scene>-cost")
-    parser.add_argument("--quick", action="store_true", help="fewer phases, steps, speeds and repetitions")
-    parser.add_argument("--page", type=Path, metavar="FILE", help="write a Markdown page too, figures in figures/ beside it")
-    parser.add_argument("--no-progress", action="store_true", help="no progress bar; it is shown on a terminal only")
-
-
-def _ranks(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number >= 1")
-    return int(text)
-
-
 def _load(name: str):
     from pyjkr.plan import plan
     from pyjkr.scene import load
 
     path = resources.scene_file(name)
     if not path.is_file() and path.suffix != ".toml":
+        if name in resources.shipped_sweeps():
+            raise SceneError(f"{name}: is a study of many points, not a scene. Type `pyjkr sweep {name}`.")
         known = ", ".join(resources.shipped_cases())
         raise SceneError(f"{name}: neither a scene file nor a shipped case. Shipped: {known}.")
     scene = load(path)
@@ -232,22 +131,24 @@ def _run(options: argparse.Namespace) -> None:
 
 def _compare(options: argparse.Namespace) -> None:
     from pyjkr import campaign, report
+    from pyjkr.calibrate import measurements
     from pyjkr.compare import compare, oracle_outcomes
 
     copy = options.directory / SCENE_COPY
     if not copy.is_file():
         raise SceneError(f"{options.directory}: holds no {SCENE_COPY}, so `pyjkr run` has not been here. Run it with -o first.")
+    measured = measurements.read(options.data) if options.data else None
+    report.clear(options.directory)
     _, made = _load(str(copy))
     outcomes = campaign.collect(made, options.directory)
-    report.clear(options.directory)
-    _finish(compare(made, oracle_outcomes(made), outcomes), options.directory)
+    _finish(compare(made, oracle_outcomes(made), outcomes), options.directory, measured)
 
 
-def _finish(comparison, directory: Path) -> None:
+def _finish(comparison, directory: Path, measured=None) -> None:
     from pyjkr import report, tables
 
     digest = hashlib.sha256((directory / SCENE_COPY).read_bytes()).hexdigest()
-    report.write(comparison, directory, digest)
+    report.write(comparison, directory, digest, measured)
     print(tables.comparison_text(comparison))
     print(f"pyjkr: wrote {directory / report.RESULT_NAME}", file=sys.stderr)
     if not comparison.passed:
@@ -291,3 +192,21 @@ def _dry_run(made, directory: Path, simulator, ranks: int) -> None:
     for case in made.cases:
         print(f"# cd '{directory / case.label}' && {launch}{program} -in {deck.DECK_NAME}")
         print(deck.render(case, made.scene))
+
+
+def _calibrate(options: argparse.Namespace) -> None:
+    from pyjkr.calibrate import command
+
+    command.run_calibrate(options)
+
+
+def _sweep(options: argparse.Namespace) -> None:
+    from pyjkr.sweep import command
+
+    command.run_sweep(options)
+
+
+ACTIONS = {
+    "scale": _scale, "plan": _plan, "deck": _deck, "run": _run, "compare": _compare, "calibrate": _calibrate,
+    "sweep": _sweep, "cost": _cost,
+}  # fmt: skip

@@ -7,6 +7,7 @@ points which coincide, as they should, are all seen.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pandas as pd
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -14,6 +15,9 @@ from matplotlib.figure import Figure
 
 from pyjkr import scaling
 from pyjkr.compare import Comparison
+
+if TYPE_CHECKING:
+    from pyjkr.calibrate.measurements import Measurements
 
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
 # Outermost first: each marker fits into the one before.
@@ -23,7 +27,7 @@ LINE_STYLES = ("-", "--", ":", "-.")
 STYLE = {"label": 11, "tick": 10, "legend": 9, "title": 11}
 
 
-def restitution_figure(comparison: Comparison, curves: pd.DataFrame) -> Figure:
+def restitution_figure(comparison: Comparison, curves: pd.DataFrame, measured: Measurements | None = None) -> Figure:
     """Effective restitution coefficient over impact speed; Haervig 2017, fig. 5.
 
     Parameters
@@ -32,6 +36,8 @@ def restitution_figure(comparison: Comparison, curves: pd.DataFrame) -> Figure:
         What to draw as markers.
     curves : DataFrame
         What to draw as lines, from `compare.oracle_curves`.
+    measured : Measurements or None
+        Points of an experiment, with error bars where their standard deviation is known.
     """
     figure, (axes,) = panels(1, (7.2, 4.6))
     table = comparison.table
@@ -39,7 +45,8 @@ def restitution_figure(comparison: Comparison, curves: pd.DataFrame) -> Figure:
     scaled = [ratio for ratio, rule in groups if rule == "scaled"]
     for style, ratio in zip(_cycle(LINE_STYLES, len(groups)), [q for q, rule in groups if rule == "unmodified"], strict=False):
         curve = curves[(curves["modulus_ratio"] == ratio) & (curves["rule"] == "unmodified")]
-        axes.plot(curve["speed"], curve["e_eff"], style, color="0.55", linewidth=1.2, zorder=1)
+        axes.plot(curve["speed"], curve["e_eff"], style, color="0.55", linewidth=1.2, zorder=1,
+                  label=rf"oracle, $E_{{\rm mod}}/E$ = {ratio:g}, $\gamma$ not modified")  # fmt: skip
     for ratio in scaled[:1]:
         curve = curves[(curves["modulus_ratio"] == ratio) & (curves["rule"] == "scaled")]
         axes.plot(curve["speed"], curve["e_eff"], "-", color="black", linewidth=1.4, label="oracle", zorder=2)
@@ -56,6 +63,9 @@ def restitution_figure(comparison: Comparison, curves: pd.DataFrame) -> Figure:
             points["speed"], points[f"e_eff_{comparison.engine}"], marker, markersize=size, color=colour, markerfacecolor="none",
             markeredgewidth=1.5, label=name, zorder=3, clip_on=False,
         )  # fmt: skip
+    if measured is not None:
+        axes.errorbar(measured.speed, measured.restitution, yerr=measured.standard_deviation, fmt="*", markersize=9, color=ORANGE,
+                      ecolor="0.5", elinewidth=0.8, label=f"measured, {Path(measured.source).name}", zorder=4)  # fmt: skip
     axes.set_xscale("log")
     _plain_speed_ticks(axes, sorted(table["speed"].unique()))
     axes.set_ylim(-0.02, 1.0)

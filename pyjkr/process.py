@@ -11,6 +11,7 @@ import select
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -28,6 +29,8 @@ _RANKS_PER_CORE = 8
 
 # One process without networks: Open MPI starts in a third of the time.
 _ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_pml": "ob1", "OMPI_MCA_btl": "self"}
+
+_SCRATCH = "OMPI_MCA_orte_tmpdir_base"
 
 
 def command(simulator: Simulator, deck: str, log: str, ranks: int) -> tuple[list[str], dict[str, str]]:
@@ -65,6 +68,17 @@ def program(command: list[str], environment: dict[str, str], directory: Path) ->
 
     A terminal rather than a pipe: into a pipe LIGGGHTS prints blocks of many thermo lines at a time.
     """
+    # Open MPI keeps one directory for all runs of a user and removes it when empty: a run that starts while another ends
+    # may find it gone and stops in MPI_Init. So each run gets its own.
+    with (
+        tempfile.TemporaryDirectory(prefix="pyjkr-", ignore_cleanup_errors=True) as scratch,
+        _started(command, {_SCRATCH: scratch} | environment, directory) as started,
+    ):
+        yield started
+
+
+@contextmanager
+def _started(command: list[str], environment: dict[str, str], directory: Path) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
     try:
         terminal, its_end = pty.openpty()
     except OSError as error:

@@ -12,10 +12,13 @@ import math
 import os
 import platform
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pyjkr import plot, tables
 from pyjkr.compare import Comparison, oracle_curves
+
+if TYPE_CHECKING:
+    from pyjkr.calibrate.measurements import Measurements
 
 RESULT_NAME = "result.json"
 FILES = (RESULT_NAME, "table.csv", "table.txt", "restitution.png", "velocity.png")
@@ -27,7 +30,7 @@ def clear(directory: Path) -> None:
         (directory / name).unlink(missing_ok=True)
 
 
-def write(comparison: Comparison, directory: Path, scene_digest: str) -> None:
+def write(comparison: Comparison, directory: Path, scene_digest: str, measured: Measurements | None = None) -> None:
     """Write all files of a comparison.
 
     Parameters
@@ -38,10 +41,12 @@ def write(comparison: Comparison, directory: Path, scene_digest: str) -> None:
         Where to.
     scene_digest : str
         SHA-256 of the scene file.
+    measured : Measurements or None
+        Points of an experiment, drawn beside the model; they decide nothing.
     """
     comparison.table.to_csv(directory / "table.csv", index=False)
     (directory / "table.txt").write_text(tables.comparison_text(comparison), encoding="utf-8")
-    plot.save(plot.restitution_figure(comparison, oracle_curves(comparison.plan)), directory / "restitution.png")
+    plot.save(plot.restitution_figure(comparison, oracle_curves(comparison.plan), measured), directory / "restitution.png")
     if comparison.plan.scene.figures.velocity_speed is not None:
         plot.save(plot.velocity_figure(comparison), directory / "velocity.png")
     unfinished = directory / f".{RESULT_NAME}.{os.getpid()}"

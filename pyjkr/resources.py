@@ -31,6 +31,11 @@ def shipped_cases() -> dict[str, Path]:
     return {path.parent.name: path for path in sorted(directory("cases").glob("*/scene.toml"))}
 
 
+def shipped_sweeps() -> dict[str, Path]:
+    """Sweep files of the shipped cases by name."""
+    return {path.parent.name: path for path in sorted(directory("cases").glob("*/sweep.toml"))}
+
+
 def scene_file(name: str) -> Path:
     """A scene given as a path, or as the name of a shipped case. Paths that do not exist come back as they are."""
     path = Path(name)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from pyjkr import arguments, cli
 from pyjkr.calibrate import CalibrationError, Measurements, Particle, command, fit, read, report
 from pyjkr.calibrate.collision import collision
 
@@ -101,9 +101,7 @@ def rebounds(tmp_path):
 
 
 def run(path, *words):
-    parser = argparse.ArgumentParser()
-    command.add_arguments(parser)
-    command.run_calibrate(parser.parse_args([str(path), *SIZE, *words]))
+    command.run_calibrate(arguments.parser(cli.ACTIONS).parse_args(["calibrate", str(path), *SIZE, *words]))
 
 
 def test_the_verb_leaves_a_result_a_curve_and_a_figure(rebounds, tmp_path, capsys):

@@ -35,7 +35,7 @@ def help_of(verb: str, capsys) -> str:
     return capsys.readouterr().out
 
 
-@pytest.mark.parametrize("verb", ["scale", "plan", "deck", "run", "compare"])
+@pytest.mark.parametrize("verb", ["scale", "plan", "deck", "run", "compare", "calibrate", "sweep", "cost"])
 def test_help_says_what_a_verb_reads_and_writes_and_ends_with_an_example(capsys, verb):
     text = help_of(verb, capsys)
     assert "Reads" in text

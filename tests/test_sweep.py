@@ -15,7 +15,7 @@ from pyjkr.sweep import executing, load
 from pyjkr.sweep.command import run_sweep
 from pyjkr.sweep.store import Store, owned
 
-LEFT = ["points", "result.json", "squares.png", "sweep.toml", "table.csv"]
+LEFT = ["points", "result.json", "squares.png", "summary.csv", "sweep.toml", "table.csv"]
 
 
 @pytest.fixture
@@ -92,6 +92,8 @@ def test_a_sweep_leaves_table_figures_and_result(tmp_path, here, capsys):
     assert result["passed"] is True and result["points"] == 2 and result["settings"]["numbers"] == [3.0, 2.0]
     assert result["checks"] == [{"name": "sum of squares", "measured": 13.0, "wanted": "<= 1e+09", "holds": True}]
     assert 0 < result["wall_time_of_points"] < 10
+    assert result["summary"] == {"columns": ["of", "numbers", "mean square"], "data": [["all", 2, 6.5]]}
+    assert (tmp_path / "out" / "summary.csv").read_text() == "of,numbers,mean square\nall,2,6.5\n"
     assert "sum of squares  13        <= 1e+09  ok" in capsys.readouterr().out
 
 

@@ -41,6 +41,7 @@ def add(directory: Path, name: str, *checks: dict) -> Path:
         "rows": 7,
         "wall_time_of_points": 125.0,
         "checks": list(checks),
+        "summary": {"columns": ["series", "phi | mean"], "data": [["S", 0.25]]},
         "figures": ["curve.png"],
     }
     (result / "result.json").write_text(json.dumps(content))
@@ -74,6 +75,7 @@ def test_the_page_shows_every_case_with_command_figure_and_checks(tmp_path):
     assert "| slope | 2.5 | 2.5 +- 0.002 | holds |" in text
     assert "| spread \\| worst | nothing | <= 1e-6 | **does not hold** |" in text
     assert "| chen_fig4 | The figure \\| of chen_fig4 | **1 of 2** | 7 | 2 min |" in text
+    assert "| series | phi \\| mean |\n| --- | --- |\n| S | 0.25 |\n" in text
     pictures = sorted(path.name for path in stale.parent.iterdir())
     assert pictures == ["cost-steps.png", "validation-chen_fig4-curve.png", "validation-haervig_fig11-curve.png"]
 

@@ -241,6 +241,29 @@ def _cumulative(distributions: pd.DataFrame, name: str, quantity: str) -> pd.Ser
     return counts.cumsum() / own.groupby("seed")["total"].first().sum()
 
 
+def summary(table: pd.DataFrame, settings: Settings) -> pd.DataFrame:
+    """Means and standard deviations over the packings of each series at the checked adhesion number, as table 1 lists them.
+
+    Steps and time of a series are compared with those of S; time is that of the time loop, median over the packings.
+    """
+    here = table[(table["kind"] == "summary") & (table["adhesion_number"] == settings.checked_adhesion_number)]
+    real = here[here["series"] == "S"]
+    lines = []
+    for name in settings.series:
+        these = here[here["series"] == name]
+        line = {"series": name, "E_R/E_O": f"{these['modulus_ratio'].iloc[0]:.3g}", "packings": len(these)}
+        for title, quantity in (("packing fraction", "packing_fraction"), ("coordination number", "coordination_number")):
+            line[title] = f"{these[quantity].mean():.4f} +- {these[quantity].std():.4f}"
+        line["overlap / delta_e"] = f"{(these['mean_overlap'] / these['equilibrium_overlap']).mean():.4f}"
+        line["steps"] = f"{these['steps'].mean():.4g}"
+        line["time of one [s]"] = f"{these['loop_time'].median():.3g}"
+        if len(real):
+            line["fewer steps"] = f"{real['steps'].mean() / these['steps'].mean():.2f}"
+            line["faster"] = f"{real['loop_time'].median() / these['loop_time'].median():.2f}"
+        lines.append(line)
+    return pd.DataFrame(lines)
+
+
 def figures(table: pd.DataFrame, settings: Settings) -> dict[str, Figure]:
     """Figs 8 to 13 of Chen 2019, as far as the swept points fill them."""
     here = table[table["adhesion_number"] == settings.checked_adhesion_number]

@@ -74,11 +74,6 @@ class Sweep:
         return [json.loads(text) for text in dict.fromkeys(texts)]
 
 
-def shipped_sweeps() -> dict[str, Path]:
-    """Sweep files of the shipped cases by name."""
-    return {path.parent.name: path for path in sorted(resources.directory("cases").glob(f"*/{SWEEP_NAME}"))}
-
-
 def sweep_file(name: str) -> Path:
     """A sweep given as a path, or as the name of a shipped case.
 
@@ -90,7 +85,7 @@ def sweep_file(name: str) -> Path:
     path = Path(name)
     if path.is_file() or path.suffix == ".toml":
         return path
-    shipped = shipped_sweeps()
+    shipped = resources.shipped_sweeps()
     if name not in shipped:
         near = difflib.get_close_matches(name, shipped, n=1)
         hint = f"Did you mean '{near[0]}'?" if near else f"Shipped: {', '.join(shipped) or 'none'}."

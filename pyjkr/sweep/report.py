@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
 from pyjkr import plot
 from pyjkr import report as impact_report
 from pyjkr.errors import RunError
@@ -25,6 +27,7 @@ from pyjkr.sweep.store import POINTS, pyjkr_version, write_whole
 
 RESULT_NAME = "result.json"
 TABLE_NAME = "table.csv"
+SUMMARY_NAME = "summary.csv"
 # Names of the figures that a sweep draws, so that the next one can remove them.
 FIGURES_NAME = "figures.json"
 LISTED_FAILURES = 10
@@ -47,7 +50,7 @@ def clear(directory: Path) -> None:
     """Remove an earlier result, so that it is not taken for that of a sweep which then fails or is stopped."""
     drawn = directory / POINTS / FIGURES_NAME
     names = json.loads(drawn.read_text(encoding="utf-8")) if drawn.is_file() else []
-    for name in (RESULT_NAME, TABLE_NAME, *names):
+    for name in (RESULT_NAME, TABLE_NAME, SUMMARY_NAME, *names):
         (directory / name).unlink(missing_ok=True)
     drawn.unlink(missing_ok=True)
 
@@ -74,6 +77,10 @@ def report(sweep: Sweep, execution: Execution, directory: Path) -> Report:
     execution.table.to_csv(directory / TABLE_NAME, index=False)
     checks = tuple(sweep.module.checks(execution.table, sweep.settings))
     drawn = {f"{stem}.png": figure for stem, figure in sweep.module.figures(execution.table, sweep.settings).items()}
+    # a study may have more to say than rows and checks: the means of many, for one
+    summary = sweep.module.summary(execution.table, sweep.settings) if hasattr(sweep.module, "summary") else None
+    if summary is not None:
+        summary.to_csv(directory / SUMMARY_NAME, index=False)
     write_whole(directory / POINTS / FIGURES_NAME, json.dumps(list(drawn)))
     for name, figure in drawn.items():
         plot.save(figure, directory / name)
@@ -81,11 +88,11 @@ def report(sweep: Sweep, execution: Execution, directory: Path) -> Report:
     if sweep.source.resolve() != copy.resolve():
         shutil.copyfile(sweep.source, copy)
     made = Report(checks, tuple(drawn))
-    write_whole(directory / RESULT_NAME, json.dumps(_result(sweep, execution, made), indent=2, allow_nan=False) + "\n")
+    write_whole(directory / RESULT_NAME, json.dumps(_result(sweep, execution, made, summary), indent=2, allow_nan=False) + "\n")
     return made
 
 
-def _result(sweep: Sweep, execution: Execution, made: Report) -> dict[str, Any]:
+def _result(sweep: Sweep, execution: Execution, made: Report, summary: pd.DataFrame | None) -> dict[str, Any]:
     return {
         "title": sweep.title,
         "study": sweep.study,
@@ -100,6 +107,7 @@ def _result(sweep: Sweep, execution: Execution, made: Report) -> dict[str, Any]:
             {"name": check.name, "measured": _json(check.measured), "wanted": check.wanted, "holds": bool(check.holds)}
             for check in made.checks
         ],
+        "summary": None if summary is None else json.loads(summary.to_json(orient="split", index=False)),
         "figures": list(made.figures),
         "versions": impact_report.versions() | {"pyjkr": pyjkr_version(), "machine": platform.machine()},
     }

@@ -61,6 +61,10 @@ def checks(table: pd.DataFrame, settings: Settings) -> list[Check]:
     return [Check("sum of squares", float(total), f"<= {settings.largest_sum:g}", bool(total <= settings.largest_sum))]
 
 
+def summary(table: pd.DataFrame, settings: Settings) -> pd.DataFrame:
+    return pd.DataFrame({"of": ["all"], "numbers": [len(table)], "mean square": [table["square"].mean()]})
+
+
 def figures(table: pd.DataFrame, settings: Settings) -> dict[str, Figure]:
     figure, (axes,) = plot.panels(1, (2, 2))
     axes.plot(table["number"], table["square"])

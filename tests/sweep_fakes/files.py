@@ -13,22 +13,6 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-# The verb as the command line runs it, with its exit status, in a process that can be interrupted.
-DRIVER = """\
-import argparse, sys
-from pyjkr.errors import PyjkrError
-from pyjkr.sweep.command import add_arguments, run_sweep
-parser = argparse.ArgumentParser()
-add_arguments(parser)
-try:
-    run_sweep(parser.parse_args())
-except PyjkrError as error:
-    print(error, file=sys.stderr)
-    sys.exit(error.exit_code)
-except KeyboardInterrupt:
-    sys.exit(130)
-"""
-
 
 class Here:
     """A crew without processes."""
@@ -68,7 +52,7 @@ def options(path: Path, output: Path, **changes: object) -> Namespace:
 def started(path: Path, output: Path, *arguments: str) -> subprocess.Popen[str]:
     """The verb in a process of its own."""
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests")])}
-    words = [sys.executable, "-c", DRIVER, str(path), "-o", str(output), "--workers", "2", *arguments]
+    words = [sys.executable, "-m", "pyjkr", "sweep", str(path), "-o", str(output), "--workers", "2", *arguments]
     return subprocess.Popen(
         words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=path.parent, start_new_session=True
     )
