@@ -13,6 +13,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+from bench import profile
 from bench.instructions import InstructionCount
 from bench.laws import Law, Mode
 from bench.measure import Sample, Spread
@@ -116,6 +117,7 @@ def page(results: Results) -> str:
             *(_laws_table(results.laws, mode) for mode in Mode),
             "![Pair time](figures/bench-laws.png)\n",
         ]
+    parts.append(profile.text(results, table))
     if results.sizes:
         parts += [
             "## Unequal spheres\n\n"
@@ -277,6 +279,7 @@ def _draw_laws(results: Results) -> plt.Figure:
         axis.set_xlabel("pair time per contact [ns]")
         axis.spines[["top", "right"]].set_visible(False)
     axes[0].set_yticks(range(len(laws)), [law.key for law in reversed(laws)], fontsize=8)
+    axes[0].set_ylim(-0.6, len(laws) - 0.4)
     return figure
 
 
@@ -298,22 +301,14 @@ def _draw_growth(results: Results) -> plt.Figure:
 
 
 def _draw_solver(results: Results) -> plt.Figure:
-    figure, axis = plt.subplots(figsize=(7.5, 4.2), layout="constrained")
-    for row in results.solver:
+    rows = sorted(results.solver, key=lambda row: row.latency_ns, reverse=True)
+    figure, axis = plt.subplots(figsize=(8.5, 0.36 * len(rows) + 0.9), layout="constrained")
+    for place, row in enumerate(rows):
         chosen = row.method.startswith("ours")
-        colour = COLOURS["full" if chosen else "stock"]
-        axis.plot(row.latency_ns, row.force_error, "o", color=colour)
-        axis.annotate(
-            row.method,
-            (row.latency_ns, row.force_error),
-            xytext=(5, 4),
-            textcoords="offset points",
-            fontsize=7,
-            color=colour,
-        )
-    axis.set_yscale("log")
-    axis.set_xlim(0.0, 1.5 * max(row.latency_ns for row in results.solver))
-    axis.set_xlabel("latency, u and F together [ns]")
-    axis.set_ylabel("largest error of F over max(|F|, F_C)")
+        axis.barh(place, row.latency_ns, color=COLOURS["full" if chosen else "stock"], height=0.7)
+        axis.text(row.latency_ns, place, f" {row.latency_ns:.0f} ns, error of F {row.force_error:.0e}", va="center", fontsize=8)
+    axis.set_yticks(range(len(rows)), [row.method for row in rows], fontsize=8)
+    axis.set_xlim(0.0, 1.35 * rows[0].latency_ns)
+    axis.set_xlabel("latency of u and F together [ns]; error over max(|F|, F$_C$)")
     axis.spines[["top", "right"]].set_visible(False)
     return figure

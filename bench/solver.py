@@ -14,7 +14,8 @@ from pyjkr.errors import RunError
 
 SOURCE = Path(__file__).resolve().parent / "solver.cpp"
 KERNELS = SOURCE.parent.parent / "liggghts_src" / "kernels"
-FLAGS = ("-O3", "-DNDEBUG", "-std=c++17")
+# Those of the plug-in.
+FLAGS = ("-O3", "-DNDEBUG", "-std=c++17", "-fno-math-errno", "-fno-trapping-math", "-fno-tree-slp-vectorize", "-ffp-contract=fast")
 
 
 @dataclass(frozen=True)
