@@ -40,6 +40,7 @@ class Case:
     floor: bool = False
     twisting: bool = True
     rolling_damping: float = 0.0
+    event_correction: str = "on"
     friction: float = 0.21
     restitution: float = 0.74
     hysteresis: float = 0.31
@@ -104,7 +105,8 @@ class Case:
                 time_step=self.duration * self.collision_time / (SNAPSHOTS * every),
                 steps=SNAPSHOTS * every,
                 style=f"model {self.model} tangential jkr rolling_friction krijt",
-                keywords=f"twisting {'on' if self.twisting else 'off'} rollingDamping {self.rolling_damping}",
+                keywords=f"twisting {'on' if self.twisting else 'off'} rollingDamping {self.rolling_damping} "
+                f"eventCorrection {self.event_correction}",
                 walls=["primitive type 1 zplane 0.0"] if self.floor else [],
                 every=every,
             ),
