@@ -111,7 +111,7 @@ def _add_calibrate(verbs) -> Verb:
     parser = _verb(
         verbs, "calibrate", "Find damping and surface energy that reproduce measured rebounds (Chen 2019, section 3).",
         "Reads a CSV file with the columns speed [m/s], restitution [-] and, where known, standard_deviation; a restitution of 0\n"
-        "is a sphere that stuck. Writes DIR/result.json, calibration.csv (curve and band) and calibration.png, and a table to stdout.",
+        "is a sphere that stuck; writes DIR/result.json, calibration.csv (curve and band) and calibration.png, and a table to stdout.",
         "pyjkr calibrate rebounds.csv --diameter 1.27e-6 --density 1026 --modulus 271e6 --modulus-mod 27.1e6",
     )  # fmt: skip
     parser.add_argument("data", type=Path, metavar="DATA", help="CSV file: speed,restitution[,standard_deviation]")

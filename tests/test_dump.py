@@ -236,9 +236,10 @@ def test_history_of_the_jkr_models_is_named_in_the_order_of_the_plugin() -> None
         "rolling_displacement",
         "in_contact",
         "carried_speed",
+        "carried_slip",
         "twisting_angle",
     ]
-    assert len(names) == 9
+    assert len(names) == 12
     assert jkr_history("jkr", "history", "epsd2", event_correction=False)[3] == "rolling_moment_x"
 
 
