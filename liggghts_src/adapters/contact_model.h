@@ -6,15 +6,14 @@
 #ifndef PYJKR_ADAPTERS_CONTACT_MODEL_H
 #define PYJKR_ADAPTERS_CONTACT_MODEL_H
 
-#include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "contact_batch.h"
 #include "instructions.h"
 #include "material_table.h"
 #include "mesh_edges.h"
+#include "neighbour_room.h"
 #include "normal_model_jkr.h"
 #include "radius_range.h"
 #include "rolling_model_krijt.h"
@@ -32,10 +31,6 @@ struct Stock : Model {
   static constexpr bool is_off = Off;
   using Model::Model;
 };
-
-// Room beyond contact in which a contact that broke within the last step is still seen, as a part of the radius:
-// the largest way of one step at 20 steps a collision and an overlap of R/2 (Hertz: 2.94 delta_max/20), rounded up.
-constexpr double kEventBand = 0.08;
 
 template <class Style>
 class ContactModel : public lcm::ContactModelBase {
@@ -102,7 +97,7 @@ class ContactModel : public lcm::ContactModelBase {
     if constexpr (!Tangential::is_jkr) tangential_.connectToProperties(registry);
     if constexpr (!Rolling::is_krijt) rolling_.connectToProperties(registry);
     const RadiusRange radii = radius_range(simulator_);
-    claim_room(radii.smallest, radii.largest);
+    room_.claim(Law::has_neck, normal_.event_correction(), radii.smallest, radii.largest, name());
   }
 
   // Overlapping surfaces.
@@ -173,6 +168,7 @@ class ContactModel : public lcm::ContactModelBase {
   LAMMPS_NS::FixWallGran* wall_;
   lcm::SurfaceModel<lcm::SURFACE_DEFAULT> surface_;
   MaterialTable materials_;
+  NeighbourRoom room_{simulator_, materials_, wall_};
   NormalModelJkr<Law> normal_;
   Tangential tangential_;
   Rolling rolling_;
@@ -244,7 +240,7 @@ class ContactModel : public lcm::ContactModelBase {
     // contact lists (compute pair/gran/local) are told all that the surface model knows
     if (!kOwnSlots || !record.update_history) surface_.surfacesIntersect(sidata, i, j);
     approach(sidata, en, record);
-    if (Law::has_neck && record.update_history && !normal_.has_contact(sidata.contact_history)) check_room(sidata, record.pair);
+    if (Law::has_neck && record.update_history && !normal_.has_contact(sidata.contact_history)) room_.check(sidata.radi, sidata.radsum, record.pair, name());
 
     const double normal_force = normal_.touch(
         sidata, [this](const Data& data) { return previous_overlap(data, data.deltan, data.vn); }, record);
@@ -375,49 +371,6 @@ class ContactModel : public lcm::ContactModelBase {
       rolling_.forget(sidata.contact_history);
     else
       rolling_.surfacesClose(sidata, none, none);
-  }
-
-  // Ask the neighbour search for the room that necks and broken contacts need, or say what to change.
-  void claim_room(double smallest_radius, double largest_radius) {
-    // pairs are found by the flag of their contact as far as the neighbour skin reaches
-    double band = wall_ && normal_.event_correction() ? kEventBand : 0.0;
-    if (Law::has_neck && smallest_radius > 0.0) {
-      double longest = 0.0, longest_of_largest = 0.0;
-      for (int i = 1; i <= materials_.types(); ++i)
-        for (int j = 1; j <= materials_.types(); ++j) {
-          longest = std::max(longest, neck_length(i, j, smallest_radius));
-          longest_of_largest = std::max(longest_of_largest, neck_length(i, j, largest_radius));
-        }
-      if (longest >= smallest_radius)
-        simulator_.error->all(FLERR, (name() + ": the neck of the smallest sphere (radius " + text(smallest_radius) + ") would be " +
-                           text(longest) + " long, longer than the sphere. Raise youngsModulus or lower surfaceEnergy").c_str());
-      if (wall_ && !wall_->is_mesh_wall() && simulator_.neighbor->skin < longest_of_largest)
-        simulator_.error->all(FLERR, (name() + ": the neighbour skin (" + text(simulator_.neighbor->skin) + ") is smaller than the longest neck at a "
-                           "primitive wall (" + text(longest_of_largest) + "): contacts would be lost. Set: neighbor " +
-                           text(1.1 * longest_of_largest) + " bin, or more").c_str());
-      band += 1.05 * longest / smallest_radius;
-    }
-    if (band > 0.0) simulator_.neighbor->register_contact_dist_factor(1.0 + band);
-  }
-
-  double neck_length(int type_i, int type_j, double radius) const {
-    return -rupture_overlap(pair_properties(materials_(type_i, type_j), radius, 0.0));
-  }
-
-  // Spheres smaller than any known before the run may come in later: their necks must still fit the band.
-  PYJKR_RARE void check_room(const Data& sidata, const PairProperties& pair) const {
-    const double neck = -rupture_overlap(pair);
-    const double room = (simulator_.neighbor->contactDistanceFactor - 1.0) * sidata.radsum;
-    if (neck > room)
-      simulator_.error->one(FLERR, (name() + ": a sphere of radius " + text(sidata.radi) + " is smaller than any known before the run; its neck (" +
-                         text(neck) + ") does not fit the contact distance (" + text(room) +
-                         "). Name its insertion fix, or create it, before the run command").c_str());
-  }
-
-  static std::string text(double value) {
-    std::ostringstream stream;
-    stream << value;
-    return stream.str();
   }
 };
 
