@@ -10,6 +10,7 @@ import pytest
 from sweep_fakes import counting
 from sweep_fakes.files import Here, evaluated, options, written
 
+from pyjkr import resources
 from pyjkr.errors import RunError, SceneError, ToleranceError
 from pyjkr.sweep import executing, load
 from pyjkr.sweep.command import run_sweep
@@ -48,6 +49,7 @@ def point_file(path: Path, output: Path, number: float) -> Path:
         ("sweep_fakes.counting", "sticking_treshold", "unknown study 'sticking_treshold'. Did you mean 'sticking_threshold'?"),
         ("sweep_fakes.counting", "check", "pyjkr.studies.check is no study: it has no VERSION, Settings"),
         ("numbers = [3.0]", "numbers = [3.0", "is not valid TOML"),
+        ("numbers = [3.0]", "numbers = [3.0, inf]", "settings.numbers[1] = inf is not a finite number. Correct it."),
         ("numbers = [3.0]", "numbers = [3.0]\nmarks = 4", "settings: marks = 4 must be a text in quotes."),
     ],
 )
@@ -69,10 +71,14 @@ def test_an_unknown_case_names_the_nearest_shipped_one():
         run_sweep(options(Path("haervig_fig21"), Path("nowhere")))
 
 
-def test_every_shipped_sweep_is_valid():
-    from pyjkr.sweep.file import shipped_sweeps
+def test_a_directory_with_a_sweep_file_is_told_from_that_file(tmp_path):
+    (tmp_path / "sweep.toml").touch()
+    with pytest.raises(SceneError, match=rf"Did you mean {tmp_path}/sweep.toml\?"):
+        run_sweep(options(tmp_path, Path("nowhere")))
 
-    shipped = shipped_sweeps()
+
+def test_every_shipped_sweep_is_valid():
+    shipped = resources.shipped_sweeps()
     assert {"haervig_fig11", "haervig_fig12"} <= set(shipped)
     for path in shipped.values():
         assert load(path).points

@@ -49,7 +49,8 @@ def interrupted_by(number: signal.Signals, tmp_path: Path) -> int:
         # Ctrl-C reaches every process of the terminal's group, a kill the one that is named.
         os.killpg(sweep.pid, number) if number == signal.SIGINT else sweep.send_signal(number)
         _, messages = sweep.communicate(timeout=PATIENCE)
-        assert messages == "" or number == signal.SIGKILL, "workers complain about an interrupt that is not theirs"
+        said = "pyjkr: interrupted; the same command goes on where this one stopped\n"
+        assert messages == said or number == signal.SIGKILL, "workers complain about an interrupt that is not theirs"
     finally:
         sweep.kill()
     wait_for(lambda: not any(map(alive, programs(tmp_path))), "what a worker ran outlives the sweep")

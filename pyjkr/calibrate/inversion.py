@@ -149,15 +149,16 @@ def fit(measurements: Measurements | str | Path, particle: Particle, law: Law = 
     def estimate(quantity: Callable, falls_to_zero: bool = False) -> Estimate:
         return _estimate(quantity, best, region, falls_to_zero)
 
+    restitution = _to_the_ends(estimate(lambda e, _: e))
     group = estimate(lambda e, ln_speed: particle.group(np.exp(ln_speed) / model.sticking_ratio(e)), True)
     found = Calibration(
         law=law,
         particle=particle,
         measurements=measurements,
         confidence=confidence,
-        restitution_coefficient=_to_the_ends(estimate(lambda e, _: e)),
-        damping_ratio=estimate(lambda e, _: damping_ratio(e)),
-        alpha=estimate(lambda e, _: math.sqrt(5) * damping_ratio(e)),
+        restitution_coefficient=restitution,
+        damping_ratio=_damping(restitution),
+        alpha=_damping(restitution, math.sqrt(5)),
         sticking_speed=estimate(lambda _, ln_speed: np.exp(ln_speed), True),
         group=group,
         surface_energy=_energy(group, particle.effective_modulus),
@@ -206,6 +207,15 @@ def _to_the_ends(estimate: Estimate) -> Estimate:
         return estimate
     lower = 0.0 if estimate.lower <= LOWEST_RESTITUTION + 1e-9 else estimate.lower
     return Estimate(estimate.value, lower, 1.0 if estimate.upper >= HIGHEST_RESTITUTION - 1e-9 else estimate.upper)
+
+
+def _damping(restitution: Estimate, factor: float = 1.0) -> Estimate:
+    """abs(beta), times a factor, of e: it falls from 1 at e = 0 to 0 at e = 1."""
+    value = factor * float(damping_ratio(restitution.value))
+    if restitution.lower is None:
+        return Estimate(value)
+    upper = 1.0 if restitution.lower == 0 else float(damping_ratio(restitution.lower))
+    return Estimate(value, factor * abs(float(damping_ratio(restitution.upper))), factor * upper)
 
 
 def _energy(group: Estimate, modulus: float | None) -> Estimate | None:

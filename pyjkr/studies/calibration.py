@@ -6,12 +6,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from pydantic import Field
+from pydantic import Field, PositiveFloat, model_validator
 from scipy import stats
 
 from pyjkr.calibrate import Measurements, Particle, fit
@@ -45,7 +45,7 @@ class Settings(polystyrene.Sphere):
     """Speed of the typical point, in sticking speeds."""
     modulus_ratio: float = Field(default=0.026, gt=0, lt=1)
     """E_mod/E of the simulation that is to reproduce the curve."""
-    speeds: tuple[float, ...] = (1.05, 1.3, 2.0, 4.0, 9.0)
+    speeds: tuple[PositiveFloat, ...] = Field(default=(1.05, 1.3, 2.0, 4.0, 9.0), min_length=1)
     """Speeds of that simulation, in sticking speeds."""
     steps_per_collision: int = Field(default=1000, ge=10)
     """Time steps per collision."""
@@ -59,8 +59,15 @@ class Settings(polystyrene.Sphere):
     """Standard deviation of each e_eff [-]."""
     seeds: int = Field(default=200, ge=20)
     """Noisy sets."""
-    confidences: tuple[float, ...] = (0.95, 0.99)
+    confidences: tuple[Annotated[float, Field(gt=0, lt=1)], ...] = Field(default=(0.95, 0.99), min_length=1)
     """Nominal joint confidences."""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Settings:
+        for low, high in (("typical", "plateau"), ("slowest", "fastest")):
+            if getattr(self, low) >= getattr(self, high):
+                raise ValueError(f"{low} = {getattr(self, low):g} must be below {high} = {getattr(self, high):g}. Swap or correct them.")
+        return self
 
 
 def points(settings: Settings) -> list[dict]:

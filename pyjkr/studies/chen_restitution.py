@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from pydantic import Field
+from pydantic import Field, PositiveFloat, model_validator
 
 from pyjkr import scaling
 from pyjkr.oracle import NormalContact, impact, sticking_speed
@@ -35,14 +35,20 @@ class Settings(polystyrene.Sphere):
     """Normal law."""
     restitution_coefficient: float = Field(default=0.86, gt=0.05, le=1)
     """e without adhesion [-]."""
-    modulus_ratios: tuple[float, ...] = (1.0, 0.26, 0.026)
+    modulus_ratios: tuple[PositiveFloat, ...] = (1.0, 0.26, 0.026)
     """E_mod/E, from the surface energies of table 1; 1 is the real stiffness and has to be there."""
-    speeds: tuple[float, ...] = (0.8, 1.1, 1.4, 2.0, 3.5, 6.0, 10.0)
+    speeds: tuple[PositiveFloat, ...] = Field(default=(0.8, 1.1, 1.4, 2.0, 3.5, 6.0, 10.0), min_length=1)
     """Impact speeds in LIGGGHTS [m/s]."""
     steps_per_collision: int = Field(default=1000, ge=10)
     """Time steps per collision."""
     curve_points: int = Field(default=90, ge=5)
     """Speeds of each line of the oracle."""
+
+    @model_validator(mode="after")
+    def _real_stiffness_is_there(self) -> Settings:
+        if 1.0 not in self.modulus_ratios:
+            raise ValueError("modulus_ratios lacks 1.0, the real stiffness that the others are compared with. Add it.")
+        return self
 
 
 def points(settings: Settings) -> list[dict]:

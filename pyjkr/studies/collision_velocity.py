@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat
 
 from pyjkr import scaling
 from pyjkr.errors import SceneError
@@ -38,7 +38,7 @@ class Settings(BaseModel):
     """Shipped case that gives the sphere, the wall and the law."""
     speed: float | None = Field(default=None, gt=0)
     """Impact speed [m/s]; None takes `figures.velocity_speed` of the scene."""
-    modulus_ratios: tuple[float, ...] = Field(default=(1.0, 0.1, 0.01), min_length=2, max_length=4)
+    modulus_ratios: tuple[PositiveFloat, ...] = Field(default=(1.0, 0.1, 0.01), min_length=2, max_length=4)
     """E_mod/E, the real stiffness first."""
     steps_per_collision: int | None = Field(default=None, ge=10)
     """Time steps per collision; None takes what the scene has."""

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from pydantic import Field, model_validator
+from pydantic import Field, PositiveFloat, model_validator
 
 from pyjkr.oracle import NormalContact, equilibrium_contact_radius, equilibrium_overlap
 from pyjkr.plan import plan
@@ -42,7 +42,7 @@ class Settings(polystyrene.Sphere):
 
     radius: float = Field(default=10e-6, gt=0)
     """[m]"""
-    radii: tuple[float, ...] = (5e-6, 10e-6, 15e-6)
+    radii: tuple[PositiveFloat, ...] = Field(default=(5e-6, 10e-6, 15e-6), min_length=1)
     """Spheres pushed in LIGGGHTS [m]."""
     critical_rolling_angle: float = Field(default=0.0084, gt=0)
     """theta_crit [rad]."""
@@ -52,9 +52,9 @@ class Settings(polystyrene.Sphere):
     """Large enough not to slip [-]."""
     restitution_coefficient: float = Field(default=0.86, gt=0.05, le=1)
     """e without adhesion [-]: damps the sliding mode."""
-    measured_radii: tuple[float, ...] = ()
+    measured_radii: tuple[PositiveFloat, ...] = ()
     """Of an experiment [m]."""
-    measured_displacements: tuple[float, ...] = ()
+    measured_displacements: tuple[PositiveFloat, ...] = ()
     """Critical rolling displacements of that experiment [m]."""
 
     @model_validator(mode="after")

@@ -136,7 +136,7 @@ def shipped(name: str) -> tuple[Scene, str]:
     """
     known = resources.shipped_cases()
     if name not in known:
-        raise SceneError(f"sweep: settings: scene = '{name}' is no shipped case with a scene. Use one of {', '.join(known)}.")
+        raise SceneError(f"settings: scene = '{name}' is no shipped case with a scene. Use one of {', '.join(known)}.")
     return scenes.load(known[name]), hashlib.sha256(known[name].read_bytes()).hexdigest()[:16]
 
 

@@ -96,7 +96,7 @@ class Settings(pydantic.BaseModel):
     @pydantic.model_validator(mode="after")
     def _checked_is_swept(self) -> Settings:
         if self.checked_adhesion_number not in self.adhesion_numbers:
-            raise ValueError(f"checked_adhesion_number = {self.checked_adhesion_number:g} is not one of adhesion_numbers")
+            raise ValueError(f"checked_adhesion_number = {self.checked_adhesion_number:g} is not one of adhesion_numbers. Add it there.")
         return self
 
 

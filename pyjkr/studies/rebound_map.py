@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 from matplotlib.figure import Figure
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat
 
 from pyjkr.errors import PlanError, RunError
 from pyjkr.plot import BLUE, GREEN, STYLE, VERMILION, panels
@@ -40,11 +40,13 @@ class Settings(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    elasticity: tuple[float, ...] = Field(default=(1e7, 2e7, 5e7, 1e8, 2e8, 2.6e8, 5e8, 1e9), min_length=2)
+    elasticity: tuple[PositiveFloat, ...] = Field(default=(1e7, 2e7, 5e7, 1e8, 2e8, 2.6e8, 5e8, 1e9), min_length=2)
     """lambda = E/(rho v^2 sin^2 psi) [-], of the real stiffness."""
-    forces: tuple[float, ...] = (0.1, 0.2, 0.4, 0.7, 0.9, 0.97, 0.98, 0.99, 1.01, 1.02, 1.03, 1.1, 1.4, 2.5, 5.0, 10.0)
+    forces: tuple[PositiveFloat, ...] = Field(
+        default=(0.1, 0.2, 0.4, 0.7, 0.9, 0.97, 0.98, 0.99, 1.01, 1.02, 1.03, 1.1, 1.4, 2.5, 5.0, 10.0), min_length=2
+    )
     """F_ext/F_yield [-]."""
-    modulus_ratios: tuple[float, ...] = (1.0, 0.01)
+    modulus_ratios: tuple[PositiveFloat, ...] = Field(default=(1.0, 0.01), min_length=1)
     """E_mod/E, the real stiffness first."""
     adhesiveness: float = Field(default=300.0, gt=0)
     """Ad = 3 gamma/(rho v^2 sin^2(psi) r) [-]."""

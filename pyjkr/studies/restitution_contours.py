@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, model_validator
 
 from pyjkr.calibrate.collision import collision
 from pyjkr.calibrate.particle import Particle, chen_group, similarity_group
@@ -36,24 +36,38 @@ class Settings(BaseModel):
 
     law: Literal["jkr", "jkr/simplified"] = "jkr"
     """Normal law."""
-    alphas: tuple[float, ...] = (0.02, 0.1, 0.3, 0.6, 1.0)
+    alphas: tuple[PositiveFloat, ...] = (0.02, 0.1, 0.3, 0.6, 1.0)
     """Damping coefficients sqrt(5) abs(beta) of the direct integrations [-]."""
-    groups: tuple[float, ...] = (6.0, 12.0, 40.0, 150.0)
+    groups: tuple[PositiveFloat, ...] = (6.0, 12.0, 40.0, 150.0)
     """(Ad El^(-2/5))^(-5/6) of the direct integrations [-]."""
-    radii: tuple[float, ...] = (0.3e-6, 0.635e-6, 4e-6)
-    """Sizes of the particles that share a group [m]; each meets each pair of the next two."""
-    moduli: tuple[float, ...] = (0.1e9, 3.8e9, 70e9)
+    radii: tuple[PositiveFloat, ...] = (0.3e-6, 0.635e-6, 4e-6)
+    """Sizes of the particles that share a group [m]."""
+    moduli: tuple[PositiveFloat, ...] = (0.1e9, 3.8e9, 70e9)
     """Effective moduli [Pa], one for each radius."""
-    surface_energies: tuple[float, ...] = (0.2, 0.05, 0.012)
+    surface_energies: tuple[PositiveFloat, ...] = (0.2, 0.05, 0.012)
     """Surface energies [J/m2], one for each radius."""
-    densities: tuple[float, ...] = (2200.0, 1050.0, 7800.0)
+    densities: tuple[PositiveFloat, ...] = (2200.0, 1050.0, 7800.0)
     """[kg/m3], one for each radius."""
     contours: tuple[float, ...] = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
     """e_eff of the contour lines."""
-    group_range: tuple[float, float] = (2.0, 300.0)
+    group_range: tuple[PositiveFloat, PositiveFloat] = (2.0, 300.0)
     """(Ad El^(-2/5))^(-5/6) that is drawn."""
     nodes: int = Field(default=160, ge=20)
     """Points of each axis of the contours."""
+
+    @model_validator(mode="after")
+    def _fit_together(self) -> Settings:
+        counts = [len(each) for each in (self.radii, self.moduli, self.surface_energies, self.densities)]
+        if len(set(counts)) > 1 or counts[0] < 2:
+            given = ", ".join(map(str, counts))
+            raise ValueError(f"radii, moduli, surface_energies, densities have {given} entries. Give one of each per particle, two or more.")
+        least, most = (ALPHA_OF_BETA * float(damping_ratio(e)) for e in (HIGHEST_RESTITUTION, LOWEST_RESTITUTION))
+        for alpha in self.alphas:
+            if not least <= alpha <= most:
+                raise ValueError(f"alphas: {alpha:g} is outside of the table, {least:.2g} to {most:.4g}. Choose one inside.")
+        if self.group_range[0] >= self.group_range[1]:
+            raise ValueError("group_range: the first end must be below the second. Swap them.")
+        return self
 
 
 def points(settings: Settings) -> list[dict]:

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, model_validator
 
 from pyjkr import plan, scaling
 from pyjkr.contact import maximum_overlap
@@ -39,7 +39,7 @@ class Settings(BaseModel):
 
     rule: Literal["unmodified", "scaled"] = "unmodified"
     """Surface energy while E changes: left alone (fig. 7), or of eq. 24 (fig. 8)."""
-    adhesiveness: tuple[float, ...] = Field(default=(1.0, 5.0, 10.0, 20.0, 24.0, 40.0), min_length=1, max_length=7)
+    adhesiveness: tuple[PositiveFloat, ...] = Field(default=(1.0, 5.0, 10.0, 20.0, 24.0, 40.0), min_length=1, max_length=7)
     """Ad = gamma/(rho v^2 R) [-]; with rule "scaled" its value at the base elasticity."""
     base_elasticity: float = Field(default=1e6, gt=0)
     """lambda from which eq. 24 starts [-]; Haervig 2017, section 5.2."""
@@ -63,6 +63,12 @@ class Settings(BaseModel):
     """Time steps per collision."""
     maximum_overlap: float = Field(default=0.5, gt=0, le=1)
     """What may press deeper, in units of R, is left out."""
+
+    @model_validator(mode="after")
+    def _range_ascends(self) -> Settings:
+        if self.lowest >= self.highest:
+            raise ValueError(f"lowest = {self.lowest:g} must be below highest = {self.highest:g}. Swap or correct them.")
+        return self
 
 
 def points(settings: Settings) -> list[dict]:

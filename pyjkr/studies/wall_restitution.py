@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat
 
 from pyjkr import plan
 from pyjkr.contact import maximum_overlap
@@ -32,7 +33,7 @@ class Settings(BaseModel):
 
     scene: str = "dahneke"
     """Shipped case that gives the sphere, the wall, the law and whatever is not set here."""
-    speeds: tuple[float, ...] | None = None
+    speeds: Annotated[tuple[PositiveFloat, ...], Field(min_length=1)] | None = None
     """Impact speeds [m/s]."""
     steps_per_collision: int | None = Field(default=None, ge=10)
     """Time steps per collision."""

@@ -122,9 +122,12 @@ class Cluster:
     def __init__(self, address: str) -> None:
         try:
             from distributed import Client
+            from distributed.comm import resolve_address
         except ImportError:
             raise RunError("--scheduler needs Dask. Install it with `pip install 'pyjkr[cluster]'`.") from None
         try:
+            # A client with an address that it cannot read is left half open, and complains when it is cleared away.
+            resolve_address(address)
             self._client = Client(address, timeout=ANSWER_SECONDS, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             reason = str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import importlib
 import json
+import math
 import pkgutil
 import tomllib
 from dataclasses import dataclass
@@ -89,6 +90,7 @@ def sweep_file(name: str) -> Path:
     if name not in shipped:
         near = difflib.get_close_matches(name, shipped, n=1)
         hint = f"Did you mean '{near[0]}'?" if near else f"Shipped: {', '.join(shipped) or 'none'}."
+        hint = f"Did you mean {path / SWEEP_NAME}?" if (path / SWEEP_NAME).is_file() else hint
         raise SceneError(f"{name}: neither a sweep file nor a shipped case with one. {hint}")
     return shipped[name]
 
@@ -132,6 +134,8 @@ def load(path: str | Path) -> Sweep:
         settings=(module.Settings, ...),
     )
     content.setdefault("settings", {})
+    if (place := _not_finite(content)) is not None:
+        raise SceneError(f"{path}: {place} is not a finite number. Correct it.")
     try:
         # As JSON, so that lists pass for tuples even where a study is strict about types.
         text = json.dumps(content, default=str)
@@ -139,6 +143,17 @@ def load(path: str | Path) -> Sweep:
     except ValidationError as error:
         raise SceneError(f"{path}: {_explain(error, content, whole)}") from error
     return Sweep(read.title, study, read.settings, path)
+
+
+def _not_finite(value: Any, place: str = "") -> str | None:
+    """Where a value of the file is inf or nan, which no point can hold, and which of them; None where it holds neither."""
+    if isinstance(value, float):
+        return None if math.isfinite(value) else f"{place} = {value}"
+    if isinstance(value, dict):
+        inner = [(f"{place}.{key}" if place else key, item) for key, item in value.items()]
+    else:
+        inner = [(f"{place}[{index}]", item) for index, item in enumerate(value)] if isinstance(value, list) else []
+    return next((found for name, item in inner if (found := _not_finite(item, name))), None)
 
 
 def _explain(error: ValidationError, content: dict[str, Any], model: type[BaseModel]) -> str:

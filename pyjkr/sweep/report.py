@@ -21,7 +21,7 @@ from pyjkr import plot
 from pyjkr import report as impact_report
 from pyjkr.errors import RunError
 from pyjkr.studies.check import Check
-from pyjkr.sweep.executing import Execution
+from pyjkr.sweep.executing import Execution, Failure
 from pyjkr.sweep.file import SWEEP_NAME, Sweep
 from pyjkr.sweep.store import POINTS, pyjkr_version, write_whole
 
@@ -133,10 +133,15 @@ def measured_text(value: float | str) -> str:
 def failure_text(execution: Execution) -> str:
     """Which points failed, why, and where to read more."""
     lines = [f"{len(execution.failures)} of {execution.points} points failed; the others are kept, the same command runs these again"]
-    for failure in execution.failures[:LISTED_FAILURES]:
-        lines += [f"  {failure.label}: {failure.message}", f"    see {failure.file}"]
-    if len(execution.failures) > LISTED_FAILURES:
-        lines.append(f"  and {len(execution.failures) - LISTED_FAILURES} more, in {execution.failures[0].file.parent.parent}/*/")
+    # One cause, a program that is missing for one, often stops all points.
+    alike: dict[str, list[Failure]] = {}
+    for failure in execution.failures:
+        alike.setdefault(failure.message, []).append(failure)
+    for message, failures in list(alike.items())[:LISTED_FAILURES]:
+        others = f" and {len(failures) - 1} more" if len(failures) > 1 else ""
+        lines += [f"  {failures[0].label}{others}: {message}", f"    see {failures[0].file}"]
+    if len(alike) > LISTED_FAILURES:
+        lines.append(f"  and {len(alike) - LISTED_FAILURES} other causes, in {execution.failures[0].file.parent.parent}/*/")
     return "\n".join(lines)
 
 
