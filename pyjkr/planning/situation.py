@@ -88,6 +88,8 @@ class Situation:
         How many spheres, how long the scene lasts [s]: what a run costs.
     contacts_per_particle : float
         Expected mean; 0.1 for a gas, 4 to 6 for a bed.
+    maximum_overlap : float
+        Deepest overlap that the scene allows, in effective radii; JKR is a theory of small strain.
     wishes : dict
         Effect -> "auto", "on" or "off", as the user forced it.
     """
@@ -105,4 +107,5 @@ class Situation:
     particles: int = 1
     time: float = 0.0
     contacts_per_particle: float = 1.0
+    maximum_overlap: float = 0.1
     wishes: dict[Effect, Wish] = field(default_factory=dict)

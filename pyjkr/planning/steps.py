@@ -1,0 +1,232 @@
+"""The time step: fine enough for the error, below the stability limit of every mode, for every meeting; the smallest decides.
+
+Covers the measured accuracy of collisions (docs/accuracy-and-cost.md) and the modes of Haervig 2017 eqs 7-9, 14, 21 and Chen 2019
+eq. 1c. Assumes event correction with the jkr models and none with stock `hertz`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pyjkr import contact as contact_laws
+from pyjkr import timestep
+from pyjkr.contact import PairProperties
+from pyjkr.limits import STABLE_FRACTION
+from pyjkr.planning import collisions
+from pyjkr.planning.budget import STEP_SHARE
+from pyjkr.planning.decision import Decision
+from pyjkr.planning.effects import on
+from pyjkr.planning.situation import Meeting, Situation
+
+# Largest error of e_eff^2 over steps per collision with event correction, worst of both laws, pairs and walls (e = 0.86, 1.1 to 8
+# times the sticking speed); docs/accuracy-and-cost.md, first table.
+NORMAL_ERROR = {20: 4.0e-3, 40: 6.4e-4, 60: 2.8e-4, 100: 9.9e-5, 200: 2.4e-5, 500: 3.8e-6, 1000: 9.4e-7}
+# The same of v_t and r omega over the impact speed, worst of all stiffnesses at 45 degrees; there, table of oblique impacts.
+OBLIQUE_ERROR = {20: 9.1e-3, 60: 5.3e-3, 200: 1.1e-3, 1000: 2.7e-4}
+# Lightly damped `jkr/simplified` sticks at speeds to which adhesion adds much: errors at 20 steps over those of e = 0.86; there, table
+# of other restitution coefficients.
+LIGHT_DAMPING = {0.86: 1.0, 0.9: 1.0, 0.95: 2.8, 0.99: 50.0}
+# Stock `hertz` has no event correction: error of e_eff^2 times steps per collision, largest over e = 0.3 to 1, 13 phases of the first
+# contact within a step and 10 to 2000 steps (plain velocity Verlet with half-step velocities, one dimension): 0.24.
+STOCK_ERROR = 0.24
+# With fewer the tables end, and sticking was not decided by more than 20.
+FEWEST_STEPS = 20
+# Square of the highest frequency of a sphere among z neighbours over that of a pair: z in a straight chain (z = 2), z/3 in cubic and
+# face-centred lattices; in between for the rest, and never below the chain.
+CHAIN, NEIGHBOUR_SHARE = 2.0, 1 / 2
+# Skin of the neighbour lists in radii of the smallest sphere, and the part of it that may be flown in a step.
+SKIN_IN_RADII, FLIGHT_SHARE = 0.2, 0.5
+# LIGGGHTS takes a Young's modulus [Pa] from here on without `soft_particles`.
+SOFTEST_MODULUS = 5e6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mode:
+    """One time scale of one meeting.
+
+    Attributes
+    ----------
+    name, where : str
+        "collision", "normal", "sliding", "rolling", "twisting", "flight"; "Rayleigh", "equilibrium overlap" for information.
+    period, limit : float
+        The time itself, and the longest time step that it allows [s].
+    binds : bool
+        Whether the limit counts.
+    formula, source : str
+        As in `Decision`.
+    """
+
+    name: str
+    where: str
+    period: float
+    limit: float
+    binds: bool
+    formula: str
+    source: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimeStep:
+    """The time step that was chosen.
+
+    Attributes
+    ----------
+    value : float
+        [s], three digits, rounded down.
+    steps_per_collision : float
+        Of the shortest collision, in steps of `value`.
+    error : float
+        Estimated error of e_eff^2 or of v/speed at that resolution.
+    limiting : Mode
+        What it is bound by.
+    modes : tuple of Mode
+        All of them.
+    """
+
+    value: float
+    steps_per_collision: float
+    error: float
+    limiting: Mode
+    modes: tuple[Mode, ...]
+
+
+def choose(situation: Situation, decisions: tuple[Decision, ...], modulus_ratio: float, max_error: float) -> TimeStep:
+    """Longest time step that keeps a quarter of `max_error` and every stability limit.
+
+    Parameters
+    ----------
+    situation, decisions
+        What may happen, what is simulated.
+    modulus_ratio : float
+        q = E_mod/E.
+    max_error : float
+        Of the result, as in `effects.decide`.
+    """
+    found = modes(situation, decisions, modulus_ratio, max_error)
+    limiting = min((mode for mode in found if mode.binds), key=lambda mode: mode.limit)
+    unit = 10.0 ** (math.floor(math.log10(limiting.limit)) - 2)
+    value = float(f"{math.floor(limiting.limit / unit * (1 + 1e-12)) * unit:.3g}")
+    shortest = min(mode.period for mode in found if mode.name == "collision")
+    return TimeStep(
+        value=value, steps_per_collision=shortest / value, error=error(situation, decisions, shortest / value),
+        limiting=limiting, modes=found,
+    )  # fmt: skip
+
+
+def error(situation: Situation, decisions: tuple[Decision, ...], steps_per_collision: float) -> float:
+    """Estimated largest error of a collision [-]: of e_eff^2, and of velocities and spins over the impact speed where it is oblique."""
+    if not on(decisions, "adhesion"):
+        normal = STOCK_ERROR / steps_per_collision
+    else:
+        normal = _interpolated(NORMAL_ERROR, steps_per_collision) * _light_damping(situation, decisions)
+    oblique = on(decisions, "sliding") and any(meeting.tangential_speed > 0 for meeting in situation.meetings)
+    return max(normal, _interpolated(OBLIQUE_ERROR, steps_per_collision) if oblique else 0.0)
+
+
+def per_collision(situation: Situation, decisions: tuple[Decision, ...], max_error: float) -> int:
+    """Steps per collision that keep a quarter of `max_error`, 20 at least."""
+    allowed, few, many = STEP_SHARE * max_error, FEWEST_STEPS, FEWEST_STEPS
+    while error(situation, decisions, many) > allowed:
+        few, many = many, 2 * many
+    while many - few > 1:
+        middle = (few + many) // 2
+        few, many = (middle, many) if error(situation, decisions, middle) > allowed else (few, middle)
+    return many
+
+
+def modes(situation: Situation, decisions: tuple[Decision, ...], modulus_ratio: float, max_error: float) -> tuple[Mode, ...]:
+    """Every time scale of every meeting, with the time step that it allows."""
+    steps = per_collision(situation, decisions, max_error)
+    return tuple(mode for meeting in situation.meetings for mode in _modes(situation, meeting, decisions, modulus_ratio, steps))
+
+
+def stiffening(situation: Situation) -> float:
+    """Square of the highest frequency among neighbours over that of one pair [-]; 1 where spheres touch one at a time."""
+    return max(CHAIN, NEIGHBOUR_SHARE * situation.contacts_per_particle) if situation.many_contacts else 1.0
+
+
+def _modes(situation: Situation, meeting: Meeting, decisions: tuple[Decision, ...], q: float, steps: int) -> list[Mode]:
+    adhesion = on(decisions, "adhesion")
+    pair = collisions.softened(meeting, q, adhesion=adhesion, originals=on(decisions, "original_limits"))
+    if not on(decisions, "damping"):
+        pair = replace(pair, restitution_coefficient=1.0)
+    radius = max(contact_laws.maximum_contact_radius(pair, meeting.speed), _radius_under_weight(situation, pair))
+    time = timestep.collision_time(pair, meeting.speed)
+    found = [
+        Mode(
+            name="collision", where=meeting.label, period=time, limit=time / steps, binds=True,
+            formula=f"min(2.868 (m^2/(R E^2 v))^(1/5), 2 pi sqrt(m/(1.2 E a_0)))/{steps}",
+            source="Hertz; Haervig 2017, eqs 7-9; docs/accuracy-and-cost.md",
+        )
+    ]  # fmt: skip
+    for name, period, ratio, source in _periods(meeting, pair, decisions, radius):
+        limit = STABLE_FRACTION * timestep.verlet_limit(period, ratio) / math.sqrt(stiffening(situation))
+        formula = f"{STABLE_FRACTION:g} (sqrt(1 + zeta^2) - zeta) T/pi at the deepest contact"
+        formula += f", /sqrt({stiffening(situation):g}) among neighbours" if situation.many_contacts else ""
+        found.append(Mode(name=name, where=meeting.label, period=period, limit=limit, binds=True, formula=formula, source=source))
+    return [*found, *_information(meeting, pair)]
+
+
+def _periods(meeting: Meeting, pair: PairProperties, decisions: tuple[Decision, ...], radius: float):
+    """(name, period, damping ratio, source) of the oscillations that the deck has."""
+    period = timestep.normal_period(pair, radius)
+    # Event correction takes normal damping at the full step, which leaves the limit of the undamped oscillation.
+    ratio = 0.0 if on(decisions, "adhesion") else timestep.normal_damping_ratio(pair, radius, period)
+    yield "normal", period, ratio, "Haervig 2017, eqs 8-11"
+    if on(decisions, "sliding"):
+        period = timestep.sliding_period(pair, radius)
+        yield "sliding", period, timestep.tangential_damping_ratio(pair, radius, period), "Haervig 2017, eqs 14-16"
+    if on(decisions, "rolling") and pair.surface_energy > 0:
+        share = timestep.spin_share(meeting.radii, collisions.masses(meeting))
+        yield "rolling", timestep.rolling_period(pair, radius, share), 0.0, "Haervig 2017, eq. 21"
+    if on(decisions, "twisting") and pair.surface_energy > 0:
+        period = timestep.twisting_period(pair, radius)
+        yield "twisting", period, timestep.tangential_damping_ratio(pair, radius, period), "Chen 2019, eq. 1c"
+
+
+def _information(meeting: Meeting, pair: PairProperties) -> list[Mode]:
+    speed, smallest = math.hypot(meeting.speed, meeting.tangential_speed), min(meeting.radii)
+    crossing = SKIN_IN_RADII * smallest / speed
+    modulus = contact_laws.particle_modulus(pair.effective_modulus, meeting.poissons_ratio)
+    rayleigh = min(
+        timestep.rayleigh_time(radius, density, modulus, meeting.poissons_ratio)
+        for radius, density in zip(meeting.radii, meeting.densities, strict=True)
+    )
+    found = [
+        Mode(name="flight", where=meeting.label, period=crossing, limit=FLIGHT_SHARE * crossing, binds=True,
+             formula=f"{FLIGHT_SHARE:g} {SKIN_IN_RADII:g} r/v", source="skin of the neighbour lists"),
+        Mode(name="Rayleigh", where=meeting.label, period=rayleigh, limit=rayleigh, binds=False,
+             formula="pi r sqrt(rho/G)/(0.1631 nu + 0.8766)", source="LIGGGHTS, fix check/timestep/gran; for comparison"),
+    ]  # fmt: skip
+    if pair.surface_energy > 0:
+        time = collisions.equilibrium_overlap(pair) / meeting.speed
+        found.append(
+            Mode(name="equilibrium overlap", where=meeting.label, period=time, limit=time, binds=False,
+                 formula="delta_0/v_n", source="Chen 2019, eq. 16; flown past in a fast impact, which resolves its own depth")
+        )  # fmt: skip
+    return found
+
+
+def _radius_under_weight(situation: Situation, pair: PairProperties) -> float:
+    """Contact radius under the largest weight [m]: Hertz' part of Haervig 2017, eq. 8."""
+    return (3 * situation.weight_carried * pair.effective_radius / (4 * pair.effective_modulus)) ** (1 / 3)
+
+
+def _interpolated(table: dict[int, float], steps: float) -> float:
+    """Between the measured numbers a straight line on log axes; beyond them of second order, the order that was measured."""
+    known = np.log(list(table))
+    at = math.log(steps)
+    value = float(np.interp(at, known, np.log(list(table.values()))))
+    return math.exp(value - 2 * (min(0.0, at - known[0]) + max(0.0, at - known[-1])))
+
+
+def _light_damping(situation: Situation, decisions: tuple[Decision, ...]) -> float:
+    """Factor on the error of `jkr/simplified` with little damping, near its sticking speed."""
+    if on(decisions, "neck"):
+        return 1.0
+    e = max(meeting.pair.restitution_coefficient for meeting in situation.meetings) if on(decisions, "damping") else 1.0
+    lightness = [-math.log(1 - value) for value in LIGHT_DAMPING]
+    return float(np.exp(np.interp(-math.log(max(1 - e, 1e-4)), lightness, np.log(list(LIGHT_DAMPING.values())))))
