@@ -5,10 +5,11 @@ Covers the styles of this plug-in with adhesion, and stock `hertz`, `history`, `
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from pyjkr.planning.decision import Decision
-from pyjkr.planning.effects import on
+from pyjkr.planning.situation import Effect
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,34 +46,46 @@ class Styles:
         return "twisting on" if self.twisting else ""
 
     @property
+    def text(self) -> str:
+        """Styles and keywords, as after `pair_style gran`."""
+        return f"{self.pair} {self.keywords}".rstrip()
+
+    @property
+    def needs_friction(self) -> bool:
+        """Whether the law reads coefficientFriction."""
+        return self.tangential != "off" or self.twisting
+
+    @property
     def properties(self) -> tuple[str, ...]:
         """Names of the `property/global` that the law reads; of rolling one of two, with Krijt's and with Chen's limit."""
         names = ["youngsModulus", "poissonsRatio", "coefficientRestitution"]
-        names += ["coefficientFriction"] if self.tangential != "off" or self.twisting else []
+        names += ["coefficientFriction"] if self.needs_friction else []
         names += ["surfaceEnergy"] if self.normal != "hertz" else []
         names += ["surfaceEnergyOriginal", "youngsModulusOriginal"] if self.original_limits else []
         limits = {"krijt": "adhesionHysteresis|criticalRollingAngle", "epsd2": "coefficientRollingFriction"}
         return (*names, *(limits[self.rolling_friction],)) if self.rolling_friction in limits else tuple(names)
 
 
-def styles(decisions: tuple[Decision, ...]) -> Styles:
-    """The contact law of a set of decisions.
+def of_effects(on: Collection[Effect]) -> Styles:
+    """The contact law that simulates some effects and no others; what needs adhesion is off without it.
 
     Parameters
     ----------
-    decisions : tuple of Decision
-        From `effects.decide`.
+    on : collection of str
+        Effects, by their names in `situation.EFFECTS`.
     """
-    adhesion = on(decisions, "adhesion")
-    normal = ("jkr" if on(decisions, "neck") else "jkr/simplified") if adhesion else "hertz"
-    sliding = "jkr" if on(decisions, "sliding_adhesion") else "history"
-    rolling = "krijt" if adhesion else "epsd2"
+    adhesion, sliding, rolling = (effect in on for effect in ("adhesion", "sliding", "rolling"))
     return Styles(
-        normal=normal,
-        tangential=sliding if on(decisions, "sliding") else "off",
-        rolling_friction=rolling if on(decisions, "rolling") else "off",
-        twisting=on(decisions, "twisting"),
-        original_limits=on(decisions, "original_limits"),
-        damping=on(decisions, "damping"),
-        gravity=on(decisions, "gravity"),
+        normal=("jkr" if "neck" in on else "jkr/simplified") if adhesion else "hertz",
+        tangential=("jkr" if adhesion and "sliding_adhesion" in on else "history") if sliding else "off",
+        rolling_friction=("krijt" if adhesion else "epsd2") if rolling else "off",
+        twisting=adhesion and rolling and "twisting" in on,
+        original_limits=adhesion and "original_limits" in on,
+        damping="damping" in on,
+        gravity="gravity" in on,
     )
+
+
+def styles(decisions: Collection[Decision]) -> Styles:
+    """The contact law of a set of decisions, as `effects.decide` makes them."""
+    return of_effects([decision.effect for decision in decisions if decision.on])
