@@ -59,23 +59,34 @@ def _add_scale(verbs) -> Verb:
 
 def _add_plan(verbs) -> Verb:
     parser = _verb(
-        verbs, "plan", "Print what would be simulated: cases, time steps, overlaps, warnings.",
-        "Reads the scene; writes a table to stdout.", "pyjkr plan dahneke",
+        verbs, "plan", "Decide what to simulate: effects, stiffness, time step; for impacts, cases and overlaps.",
+        "Reads the scene; writes tables to stdout. Of a scene of many particles it decides on everything that the scene leaves\n"
+        "open, writes the deck that runs, plan.txt and plan-explained.txt to DIR, and with --verify runs probes of the scene at\n"
+        "the planned and at the real stiffness (DIR/verify/, DIR/verification.json). Exit status 1 where one exceeds the limit.",
+        "pyjkr plan ash_on_tube --max-error 1%",
     )  # fmt: skip
     parser.add_argument("scene", metavar="SCENE")
+    _add_max_error(parser)
+    parser.add_argument("--explain", action="store_true", help="print every derived number with its formula and source")
+    parser.add_argument("--verify", action="store_true", help="measure the error and the time saved in small runs of LIGGGHTS")
+    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="default: results/<name of the scene>-plan")
+    parser.add_argument("--no-progress", action="store_true", help="no progress bar; it is shown on a terminal only")
     return "plan", parser
 
 
 def _add_deck(verbs) -> Verb:
     parser = _verb(
         verbs, "deck", "Render the LIGGGHTS decks of a scene.",
-        "Reads the scene; writes DIR/<case>/in.deck and prints their paths, or with --case prints one deck.",
+        "Reads the scene; writes DIR/<case>/in.deck and prints their paths, or with --case prints one deck. Of a scene of many\n"
+        "particles there is one deck, DIR/in.deck with what it reads; without -o it goes to stdout.",
         "pyjkr deck dahneke --case 5.0mps_q0.1_scaled",
     )  # fmt: skip
     parser.add_argument("scene", metavar="SCENE")
-    target = parser.add_mutually_exclusive_group(required=True)
+    target = parser.add_mutually_exclusive_group()
     target.add_argument("-o", "--output", type=Path, metavar="DIR", help="write all decks here")
     target.add_argument("--case", metavar="LABEL", help="print the deck of one case, as `pyjkr plan` names it")
+    _add_max_error(parser)
+    parser.add_argument("--explain", action="store_true", help="print every derived number of the plan to stderr")
     return "deck", parser
 
 
@@ -83,10 +94,12 @@ def _add_run(verbs) -> Verb:
     parser = _verb(
         verbs, "run", "Run every case of a scene and compare it with the oracle.",
         "Reads the scene; writes DIR/<case>/ (deck, log, dump), DIR/result.json, table.csv, table.txt and PNG figures,\n"
-        "and the table to stdout. Finished cases are not run again. Exit status 1 where a tolerance is exceeded.",
+        "and the table to stdout. Finished cases are not run again. Exit status 1 where a tolerance is exceeded.\n"
+        "A scene of many particles is planned and run; it writes DIR/in.deck, dumps, evolution.csv, picture.png, result.json.",
         "pyjkr run dahneke -o results/dahneke",
     )  # fmt: skip
     parser.add_argument("scene", metavar="SCENE")
+    _add_max_error(parser)
     parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="default: results/<name of the scene>")
     parser.add_argument("--engine", choices=("liggghts", "oracle"), help="default: liggghts where it is found, else oracle")
     parser.add_argument("--np", type=_count, default=1, metavar="N", help="MPI processes (default: 1)")
@@ -156,12 +169,35 @@ def _add_cost(verbs) -> Verb:
         "and tables to stdout. Finished runs are not repeated. Exit status 1 where a promised accuracy is missed.",
         "pyjkr cost dahneke --quick -o results/dahneke-cost",
     )  # fmt: skip
-    parser.add_argument("scene", metavar="SCENE")
+    parser.add_argument("scene", nargs="?", metavar="SCENE")
+    parser.add_argument("--calibrate", action="store_true", help="measure what LIGGGHTS costs on this machine, for the estimates of plan")
     parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="default: results/<name of the scene>-cost")
     parser.add_argument("--quick", action="store_true", help="fewer phases, steps, speeds and repetitions")
     parser.add_argument("--page", type=Path, metavar="FILE", help="write a Markdown page too, figures in figures/ beside it")
     parser.add_argument("--no-progress", action="store_true", help="no progress bar; it is shown on a terminal only")
     return "cost", parser
+
+
+class _MaxError(argparse.Action):
+    """Keeps that it was given: scenes of impacts are planned only then."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> None:
+        namespace.max_error, namespace.max_error_given = values, True
+
+
+def _add_max_error(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(max_error_given=False)
+    parser.add_argument(
+        "--max-error", type=_part, default=0.05, action=_MaxError, metavar="X",
+        help="largest error of the result, such as 1%% or 0.01 (default: 5%%); of scenes of many particles",
+    )  # fmt: skip
+
+
+def _part(text: str) -> float:
+    try:
+        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} must be a number such as 0.01, or 1%") from None
 
 
 def _count(text: str) -> int:

@@ -44,16 +44,31 @@ def main(words: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _load(name: str):
-    from pyjkr.plan import plan
-    from pyjkr.scene import load
-
+def _path(name: str) -> Path:
     path = resources.scene_file(name)
     if not path.is_file() and path.suffix != ".toml":
         if name in resources.shipped_sweeps():
             raise SceneError(f"{name}: is a study of many points, not a scene. Type `pyjkr sweep {name}`.")
         known = ", ".join(resources.shipped_cases())
         raise SceneError(f"{name}: neither a scene file nor a shipped case. Shipped: {known}.")
+    return path
+
+
+def _many(name: str) -> Path | None:
+    """Path of a scene of many particles; None where it is one of impacts."""
+    from pyjkr.application.scene import is_application
+
+    path = _path(name)
+    return path if is_application(path) else None
+
+
+def _load(name: str):
+    from pyjkr.plan import plan
+    from pyjkr.scene import load
+
+    path = _path(name)
+    if _many(name):
+        raise SceneError(f"{path}: is a scene of many particles; this verb takes impacts of one pair. `pyjkr plan`, `deck` and `run` take both.")
     scene = load(path)
     try:
         made = plan(scene)
@@ -88,16 +103,44 @@ def _scale(options: argparse.Namespace) -> None:
 
 
 def _plan(options: argparse.Namespace) -> None:
+    path = _many(options.scene)
+    if path:
+        from pyjkr.application import command
+
+        command.run_plan(path, options)
+        return
+    for name in ("verify", "output"):
+        if getattr(options, name):
+            raise SceneError(f"{options.scene}: --{name} belongs to scenes of many particles; `pyjkr run` compares impacts with the oracle.")
     from pyjkr import tables
 
     _, made = _load(options.scene)
+    if options.explain or options.max_error_given:
+        from pyjkr.planning import plan, table
+        from pyjkr.planning.impact_scene import situation_of_impact
+
+        best = plan.plan(situation_of_impact(made.scene), options.max_error)
+        print(table.explain(best) if options.explain else table.text(best))
+        return
     print(tables.plan_text(made))
 
 
 def _deck(options: argparse.Namespace) -> None:
+    path = _many(options.scene)
+    if path:
+        if options.case:
+            raise SceneError(f"{path}: --case belongs to scenes of impacts; this one has one deck. Leave it out.")
+        from pyjkr.application import command
+
+        command.run_deck(path, options)
+        return
     from pyjkr import deck
 
     _, made = _load(options.scene)
+    if options.explain:
+        raise SceneError(f"{options.scene}: `pyjkr plan {options.scene} --explain` explains scenes of impacts.")
+    if not options.output and not options.case:
+        raise SceneError(f"{options.scene}: give -o DIR for all its decks, or --case LABEL for one of them.")
     if options.output:
         for case in made.cases:
             print(deck.write(case, made.scene, options.output / case.label))
@@ -109,6 +152,12 @@ def _deck(options: argparse.Namespace) -> None:
 
 
 def _run(options: argparse.Namespace) -> None:
+    path = _many(options.scene)
+    if path:
+        from pyjkr.application import command
+
+        command.run_run(path, options)
+        return
     from pyjkr import campaign, progress, report
     from pyjkr.compare import compare, oracle_outcomes
 
@@ -156,6 +205,11 @@ def _finish(comparison, directory: Path, measured=None) -> None:
 
 
 def _cost(options: argparse.Namespace) -> None:
+    if options.calibrate:
+        _cost_model(options)
+        return
+    if not options.scene:
+        raise SceneError("cost: give a SCENE, or --calibrate.")
     from pyjkr.cost import command, report, tables
 
     path, made = _load(options.scene)
@@ -167,6 +221,19 @@ def _cost(options: argparse.Namespace) -> None:
     print(f"pyjkr: wrote {directory / report.RESULT_NAME}", file=sys.stderr)
     if not costs.passed:
         raise ToleranceError("outside tolerance; see the lines marked BAD")
+
+
+def _cost_model(options: argparse.Namespace) -> None:
+    from pyjkr.planning import cost_model, timing
+    from pyjkr.progress import of_steps
+    from pyjkr.run import find_simulator
+
+    if options.scene:
+        raise SceneError("cost: --calibrate measures this machine and takes no SCENE.")
+    with of_steps("beds", not options.no_progress) as report:
+        model = timing.calibrate(find_simulator(), report=report)
+    print(cost_model.text(model))
+    print(f"pyjkr: wrote {cost_model.store(model)}", file=sys.stderr)
 
 
 def _simulator(engine: str | None, dry_run: bool):

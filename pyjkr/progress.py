@@ -40,6 +40,24 @@ def of_run(name: str, total_steps: int | None, wanted: bool | None) -> Iterator[
         yield lambda step: progress.update(task, completed=step)
 
 
+@contextmanager
+def of_steps(name: str, wanted: bool) -> Iterator[Callable[[int, int], None]]:
+    """Shows some work while the block lasts; hands over the function to call with how much is done, of how much.
+
+    Parameters
+    ----------
+    name : str
+        What stands before the bar.
+    wanted : bool
+        False shows nothing; True still shows nothing where stderr is not a terminal.
+    """
+    console = Console(stderr=True)
+    columns = (TextColumn(name), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, disable=not (wanted and console.is_terminal), transient=True) as bar:
+        task = bar.add_task("", total=None)
+        yield lambda done, every: bar.update(task, completed=done, total=every)
+
+
 class _Rate(ProgressColumn):
     def render(self, task: Task) -> Text:
         speed = task.finished_speed or task.speed

@@ -44,7 +44,8 @@ def test_help_says_what_a_verb_reads_and_writes_and_ends_with_an_example(capsys,
 
 
 @pytest.mark.parametrize("verb", ["scale", "plan", "deck"])
-def test_the_example_of_the_help_runs(capsys, verb):
+def test_the_example_of_the_help_runs(capsys, tmp_path, monkeypatch, verb):
+    monkeypatch.chdir(tmp_path)
     program, *arguments = shlex.split(help_of(verb, capsys).rstrip().splitlines()[-1])
     assert program == "pyjkr"
     assert run(*arguments) == 0
@@ -106,7 +107,7 @@ def test_a_bad_scene_ends_in_one_line_and_status_2(capsys, tmp_path, verb):
 
 def test_an_unknown_scene_names_the_shipped_ones(capsys):
     assert run("plan", "dahnek") == 2
-    assert "Shipped: dahneke" in capsys.readouterr().err
+    assert re.search("Shipped: .*dahneke", capsys.readouterr().err)
 
 
 @pytest.mark.parametrize(

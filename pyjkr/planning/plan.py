@@ -167,7 +167,7 @@ def _tabor_arguments(meeting: Meeting) -> tuple[float, float, float]:
 
 def _budget(situation: Situation, decisions: tuple[Decision, ...], modulus_ratio: float, step: TimeStep) -> dict[str, float]:
     budget = {f"without {made.effect}": made.number for made in decisions if not made.on and made.number > 0}
-    if situation.about == "impact":
+    if situation.about_single_impacts:
         parts = oblique.change(situation, decisions, modulus_ratio)
         budget |= {f"softening, {cause}": value for cause, value in parts.items() if value > 0}
     return budget | {f"time step, {step.steps_per_collision:.3g} steps per collision": step.error}

@@ -86,6 +86,8 @@ class Situation:
         Largest weight that rests on one contact [N]: of a sphere, or of the column above it in a bed.
     particles, time : float
         How many spheres, how long the scene lasts [s]: what a run costs.
+    spheres_across : float
+        Spheres across the largest body of many that hits something as a whole; 1 for single spheres.
     contacts_per_particle : float
         Expected mean; 0.1 for a gas, 4 to 6 for a bed.
     maximum_overlap : float
@@ -106,6 +108,12 @@ class Situation:
     weight_carried: float = 0.0
     particles: int = 1
     time: float = 0.0
+    spheres_across: float = 1.0
     contacts_per_particle: float = 1.0
     maximum_overlap: float = 0.1
     wishes: dict[Effect, Wish] = field(default_factory=dict)
+
+    @property
+    def about_single_impacts(self) -> bool:
+        """Whether speed and spin after each impact are the result; beds, clusters and fragments forget them after the next one."""
+        return self.about == "impact" and self.spheres_across == 1

@@ -25,6 +25,10 @@ from pyjkr.planning.situation import Meeting, Situation
 DENSE_RATIO = 1e-3
 # Part of the volume strain: three directions.
 DIRECTIONS = 3
+# Contacts that an agglomerate loses more or less by softening, in parts of all: per 1 - q^(2/5), which resistance to sliding and
+# rolling loses while fragments rearrange, and the square of the energy of a radius of sliding over that of the impact; and per
+# strain of the whole body by deeper overlaps. From ensembles of runs, docs/break-up.md.
+LOST_RESISTANCE, MOST_LOST, BODY_STRAIN = 0.012, 0.125, 0.03
 # Lowest ratio looked for.
 LOWEST = 1e-12
 
@@ -55,6 +59,8 @@ def limits(situation: Situation, decisions: tuple[Decision, ...], max_error: flo
                 formula="q >= 1e-3", source="Haervig 2017, sec. 6",
             )
         )  # fmt: skip
+    if situation.spheres_across > 1:
+        found.append(_break_up(situation, decisions, allowed))
     found.append(_saturation(situation, decisions, max_error))
     found.append(_modulus_range(situation))
     return tuple(found)
@@ -92,7 +98,7 @@ def _oblique_impacts(situation: Situation, decisions: tuple[Decision, ...], allo
     smallest = _smallest(excess)
     at = max(smallest, LOWEST)
     parts = ", ".join(f"{cause} {value:.2g}" for cause, value in oblique.change(situation, decisions, at).items() if value > 0)
-    if situation.about != "impact":
+    if not situation.about_single_impacts:
         text = f"single rebounds are not the result: within {allowed:g} of v they would need {smallest:.2g}"
         return Limit(name=name, smallest_ratio=0.0, estimate=text, formula=formula, source=source)
     return Limit(name=name, smallest_ratio=smallest, estimate=f"{allowed:g} of v: {parts}", formula=formula, source=source)
@@ -168,6 +174,44 @@ def _force_in_impacts(situation: Situation, decisions: tuple[Decision, ...], all
         name="outer force during an impact", smallest_ratio=(worst / (worst + allowed)) ** 2.5 if worst > 0 else 0.0,
         estimate=f"changes speeds by {allowed:g} of the impact's" if worst > 0 else "no outer force, or every impact sticks",
         formula="F (t_c(q) - t_c(1))/(m v), t_c ~ q^(-2/5)", source="Chen 2019, eq. 18; momentum",
+    )  # fmt: skip
+
+
+def break_up_change(situation: Situation, modulus_ratio: float, adhesion: bool = True) -> float:
+    """Change of the contacts that are left of a body which breaks in an impact, in parts of all; docs/break-up.md.
+
+    Parameters
+    ----------
+    situation : Situation
+        With `spheres_across`.
+    modulus_ratio : float
+        q.
+    adhesion : bool
+        Whether it is simulated.
+    """
+    return sum(max((_break_up_parts(situation, meeting, modulus_ratio, adhesion) for meeting in situation.meetings), key=sum))
+
+
+def _break_up_parts(situation: Situation, meeting: Meeting, q: float, adhesion: bool) -> tuple[float, float]:
+    soft, real = (collisions.softened(meeting, ratio, adhesion=adhesion) for ratio in (q, 1.0))
+    sphere = max(meeting.radii)
+    resists = 2 * meeting.friction_coefficient * real.pull_off_force * sphere
+    share = resists / (0.5 * collisions.masses(meeting)[0] * meeting.speed**2)
+    deeper = collisions.overlap_in_impact(soft, meeting.speed) - collisions.overlap_in_impact(real, meeting.speed)
+    return min(MOST_LOST, LOST_RESISTANCE * share**2) * (1 - q**0.4), BODY_STRAIN * situation.spheres_across * deeper / sphere
+
+
+def _break_up(situation: Situation, decisions: tuple[Decision, ...], allowed: float) -> Limit:
+    adhesion = on(decisions, "adhesion")
+    smallest = _smallest(lambda q: break_up_change(situation, q, adhesion) - allowed)
+    at = max(smallest, LOWEST)
+    resistance, strain = max((_break_up_parts(situation, meeting, at, adhesion) for meeting in situation.meetings), key=sum)
+    return Limit(
+        name="break-up of bodies of many spheres", smallest_ratio=smallest,
+        estimate=f"{allowed:g} of the contacts: resistance {resistance:.2g}, strain of the body {strain:.2g}",
+        formula=f"min({MOST_LOST:g}, {LOST_RESISTANCE:g} (4 mu F_C r/(m v^2))^2) (1 - q^(2/5))"
+        f" + {BODY_STRAIN:g} n (delta(q) - delta(1))/r, n across the body",
+        source="measured in ensembles of runs, docs/break-up.md",
     )  # fmt: skip
 
 

@@ -117,12 +117,15 @@ def choose(situation: Situation, decisions: tuple[Decision, ...], modulus_ratio:
 
 
 def error(situation: Situation, decisions: tuple[Decision, ...], steps_per_collision: float) -> float:
-    """Estimated largest error of a collision [-]: of e_eff^2, and of velocities and spins over the impact speed where it is oblique."""
+    """Estimated largest error of a collision [-]: of e_eff^2, and of velocities and spins over the impact speed where it is oblique.
+
+    The second only where impacts are the result: beds and agglomerates forget the spin after a single one.
+    """
     if not on(decisions, "adhesion"):
         normal = STOCK_ERROR / steps_per_collision
     else:
         normal = _interpolated(NORMAL_ERROR, steps_per_collision) * _light_damping(situation, decisions)
-    oblique = on(decisions, "sliding") and any(meeting.tangential_speed > 0 for meeting in situation.meetings)
+    oblique = situation.about_single_impacts and on(decisions, "sliding") and any(meeting.tangential_speed > 0 for meeting in situation.meetings)
     return max(normal, _interpolated(OBLIQUE_ERROR, steps_per_collision) if oblique else 0.0)
 
 
