@@ -26,6 +26,8 @@ TURNING_SHARE = 0.65
 # Change of v_t and r omega of an impact that sticks and rolls, over v_t, per square of the stuck period over the time in which it is
 # stopped: in the oracle 0.08 to 0.29 for q = 0.1 to 0.001 (1 um, 1 m/s, 60 degrees, 15 to 60 periods).
 SETTLING_SHARE = 0.35
+# It holds down to so many periods; with 4.5 the way rolled was wrong by twice the estimate (25 um, q = 1e-4), so fewer count as lost.
+FEWEST_PERIODS = 8
 
 
 def change(situation: Situation, decisions: tuple[Decision, ...], modulus_ratio: float) -> dict[str, float]:
@@ -69,7 +71,9 @@ def _oblique_parts(meeting: Meeting, decisions: tuple[Decision, ...], q: float) 
         # It rolls on for a time that does not scale: a smaller moment stops it later.
         moment = scaling.force_factor(q) * limit / meeting.critical_rolling if math.isfinite(meeting.critical_rolling) else 1.0
         if on(decisions, "rolling"):
-            parts["settling"] = SETTLING_SHARE * share * (_settling(meeting, soft) ** 2 - _settling(meeting, real) ** 2)
+            known = _settling(meeting, soft) * FEWEST_PERIODS <= 1
+            change = _settling(meeting, soft) ** 2 - _settling(meeting, real) ** 2
+            parts["settling"] = share * (SETTLING_SHARE * change if known or change == 0 else 1.0)
             parts |= {} if originals else {"scaled rolling": share * (1 - moment)}
         return parts
     parts["turning"] = TURNING_SHARE * (collisions.turning(meeting, soft) - collisions.turning(meeting, real))

@@ -28,7 +28,7 @@ DIRECTIONS = 3
 # Contacts that an agglomerate loses more or less by softening, in parts of all: per 1 - q^(2/5), which resistance to sliding and
 # rolling loses while fragments rearrange, and the square of the energy of a radius of sliding over that of the impact; and per
 # strain of the whole body by deeper overlaps. From ensembles of runs, docs/break-up.md.
-LOST_RESISTANCE, MOST_LOST, BODY_STRAIN = 0.012, 0.125, 0.03
+LOST_RESISTANCE, MOST_LOST, BODY_STRAIN = 0.012, 0.15, 0.03
 # Lowest ratio looked for.
 LOWEST = 1e-12
 

@@ -49,7 +49,7 @@ def test_estimate_knows_what_real_limits_do():
     assert estimated(at, 0.05, original_limits="on", sliding_adhesion="on") > 2 * estimated(at, 0.05)
 
 
-@pytest.mark.parametrize(("ratio", "originals"), [(0.03, "on"), (0.03, "off"), (0.002, "on")])
+@pytest.mark.parametrize(("ratio", "originals"), [(0.3, "on"), (0.03, "off"), (0.002, "on")])
 def test_impact_that_sticks_is_stopped_by_the_real_moment_only(ratio, originals):
     at = at_angle(SINGLE, 1.0, 60)
     time = 15 * timestep.stuck_period(at.pair)
@@ -57,7 +57,8 @@ def test_impact_that_sticks_is_stopped_by_the_real_moment_only(ratio, originals)
     measured = change(outcome(at, ratio, originals=originals == "on", duration=time)[1:], outcome(at, duration=time)[1:])
     estimate = estimated(at, ratio, original_limits=originals)
     assert measured <= estimate
-    assert (estimate < 0.25) if originals == "on" else (measured > 0.05)
+    # At 0.002 it stops within few periods of the soft contact: no estimate, all of the speed along the wall counts as lost.
+    assert measured > 0.05 if originals == "off" else (estimate < 0.25) == (ratio == 0.3)
     assert next(made for made in decide(situation(at), MAX_ERROR) if made.effect == "original_limits").on
 
 
