@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -227,3 +228,26 @@ def test_softened_pair_is_that_of_the_papers():
     assert pair.pull_off_force == pytest.approx(float(oracle.pull_off_force(contact(at, ratio=0.01))))
     assert pair.equilibrium_contact_radius == pytest.approx(float(oracle.equilibrium_contact_radius(contact(at, ratio=0.01))))
     assert pair.surface_energy_of_rolling == at.pair.surface_energy
+
+
+# --- bodies of many spheres ------------------------------------------------------------------------------------------------
+
+
+def test_estimate_of_break_up_bounds_the_measured_page():
+    page = (Path(__file__).parents[2] / "docs" / "break-up.md").read_text(encoding="utf-8")
+    rows = [[cell.strip() for cell in line.strip("|\n").split("|")] for line in page.splitlines() if "| scaled |" in line]
+    assert len(rows) == 10
+    for row in rows:
+        change, error = (float(part) for part in row[6].split("+-"))
+        assert abs(change) <= float(row[7]) + 2 * error, row
+
+
+def test_body_of_many_spheres_softens_less_the_wider_it_is_and_the_slower_it_hits():
+    def smallest(speed: float, across: float) -> float:
+        scene = replace(situation(at_angle(PAIR, speed, 40)), spheres_across=across)
+        return limit(scene, "break-up of bodies of many spheres").smallest_ratio
+
+    assert smallest(8.0, 12.0) > smallest(8.0, 6.0) > 0
+    assert smallest(4.0, 6.0) > smallest(8.0, 6.0)
+    with pytest.raises(StopIteration):
+        smallest(8.0, 1.0)
