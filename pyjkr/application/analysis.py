@@ -117,9 +117,7 @@ def frames(scene: Application, variant: Variant, directory: Path) -> list[Frame]
         listed = contacts[["c_contacts[1]", "c_contacts[2]"]].to_numpy().astype(np.int64) - 1
         pairs = {step: listed[rows] for step, rows in contacts.groupby("step").indices.items()}
     none = np.empty((0, 2), dtype=np.int64)
-    return [
-        _frame(scene, law, step * variant.time_step, rows, pairs.get(step, none)) for step, rows in spheres.groupby("step", sort=True)
-    ]
+    return [_frame(scene, law, step * variant.time_step, rows, pairs.get(step, none)) for step, rows in spheres.groupby("step", sort=True)]
 
 
 def observables(scene: Application, variant: Variant, directory: Path) -> dict[str, float]:

@@ -30,6 +30,7 @@ INLINE = 2
 CONTINUED = " &\n" + 17 * " "
 # Skin of the neighbour lists in radii of the largest sphere, and in necks; bins of the whole domain at most, a few bytes each.
 SKIN_IN_RADII, SKIN_IN_NECKS, MOST_BINS = 0.4, 2.0, 2e6
+ROUND_OFF = 1e-12
 # Facets around a tube, 5 degrees each.
 FACETS = 72
 # Digits of the numbers in a deck: more would show round-off, 0.30000000000000004; places and velocities in the data file have all.
@@ -132,9 +133,14 @@ def _reads(path: Path, text: str) -> bool:
 
 
 def steps(scene: Application, variant: Variant, duration: float | None = None) -> tuple[int, int]:
-    """Steps of the run, and from frame to frame: the last frame is the end, which is a frame or less late."""
-    interval = max(1, math.ceil((duration or scene.run.duration) / variant.time_step / scene.run.frames))
-    return interval * scene.run.frames, interval
+    """Steps of the run, and from frame to frame: the last frame is the end, which is less than a frame late.
+
+    There are as many frames as the scene asks for, or fewer, at least half, where they are few steps apart.
+    """
+    # A duration that is a whole number of steps is not made longer by round-off.
+    needed = max(1, math.ceil((duration or scene.run.duration) / variant.time_step * (1 - ROUND_OFF)))
+    interval = math.ceil(needed / scene.run.frames)
+    return math.ceil(needed / interval) * interval, interval
 
 
 def default_skin(scene: Application, law: Law) -> float:
@@ -170,7 +176,7 @@ def _text(scene: Application, law: Law, start: Spheres, comments: Sequence[str],
     materials, bounds = scene.materials, places.box(scene, start)
     volume = math.prod(high - low for low, high in bounds)
     total, interval = steps(scene, variant, duration)
-    chosen = skin or default_skin(scene, law)
+    chosen = _rounded_up(skin or default_skin(scene, law))
     inline = len(start.radii) <= INLINE
 
     def matrix(value: str | Callable) -> str:
@@ -193,7 +199,7 @@ def _text(scene: Application, law: Law, start: Spheres, comments: Sequence[str],
         digest="" if inline else hashlib.sha256(data_file(scene, start).encode()).hexdigest()[:16],
         spheres=_inline(scene, start) if inline else [],
         skin=chosen,
-        bin_size=float(f"{max(0.5 * (2 * scene.radii[1] + chosen), (volume / MOST_BINS) ** (1 / 3)):.3g}"),
+        bin_size=_rounded_up(max(0.5 * (2 * scene.radii[1] + chosen), (volume / MOST_BINS) ** (1 / 3))),
         moduli=[scene.material[name].youngs_modulus for name in materials],
         moduli_mod=[law.youngs_modulus(name) for name in materials],
         poissons_ratios=[scene.material[name].poissons_ratio for name in materials],
@@ -264,6 +270,13 @@ def _number(value: object) -> object:
     if value == 0 or int(power) in WRITTEN_OUT:
         return f"{value + 0.0:.{DIGITS}g}"
     return f"{mantissa.rstrip('0').rstrip('.')}e{int(power)}"
+
+
+def _rounded_up(value: float) -> float:
+    """To three digits: nothing hangs on more in a skin or a bin, but a skin must not get shorter."""
+    power = math.floor(math.log10(value)) - 2
+    # Round-off must not raise what has three digits already.
+    return float(f"{math.ceil(float(f'{value / 10.0**power:.9g}'))}e{power}")
 
 
 def _numbers(values: Iterable[object], separator: str = " ") -> str:

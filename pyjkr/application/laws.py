@@ -132,7 +132,9 @@ def law(scene: Application, variant: Variant) -> Law:
     for contact in scene.contact:
         where = f"{scene.source}: contact '{contact.between[0]}'-'{contact.between[1]}'"
         if styles.needs_friction and contact.friction_coefficient is None:
-            raise PlanError(f"{where}: friction_coefficient is missing; '{styles.text}' needs it. Give it, or set [effects] sliding = 'off'.")
+            raise PlanError(
+                f"{where}: friction_coefficient is missing; '{styles.text}' needs it. Give it, or set [effects] sliding = 'off'."
+            )
         if styles.rolling_friction == "epsd2":
             if contact.coefficient_rolling_friction is None:
                 raise PlanError(
@@ -147,9 +149,7 @@ def law(scene: Application, variant: Variant) -> Law:
             )
     kinds = {contact.adhesion_hysteresis is None for contact in scene.contact}
     if styles.rolling_friction == "krijt" and len(kinds) > 1:
-        raise PlanError(
-            f"{scene.source}: some contacts give adhesion_hysteresis, others critical_rolling_angle. Give the same for all."
-        )
+        raise PlanError(f"{scene.source}: some contacts give adhesion_hysteresis, others critical_rolling_angle. Give the same for all.")
     return Law(scene=scene, variant=variant)
 
 

@@ -1,7 +1,7 @@
 """A run -> one picture: the spheres from the side, and the number that the scene is about over time.
 
 Covers one view or two and one curve for each start of `scene.Start`. Spheres are circles, the farther ones drawn first and paler,
-coloured by fragment or cluster, in a stream by what the tube holds. Wide views stand above the curve, others beside it.
+coloured by fragment or cluster, in a stream by what the tube holds.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ ROOM, OUTERMOST = 0.6, 4.0
 LOWEST_OF_TUBE = 0.25
 # Views flatter than this, height over width, stand above the curve. Sizes in inches.
 FLAT = 0.5
-WIDTH, HEIGHT, CURVE, MARGIN = 6.4, 3.4, 2.3, 0.85
+WIDTH, HEIGHT, CURVE, WIDTH_OF_CURVE, MARGIN = 6.4, 3.4, 2.3, 3.6, 0.85
 
 
 @dataclass(frozen=True)
@@ -96,20 +96,26 @@ def draw(scene: Application, every: list[Frame]) -> Figure:
 
 
 def _panels(window: Window, views: int) -> tuple[Figure, list[Axes], Axes]:
+    """Axes of the views and of the curve: flat views above each other and above it, one other beside it, two side by side above it."""
+    names = list(range(views))
     if window.flatness < FLAT:
         height = WIDTH * window.flatness
         size = (WIDTH + MARGIN, views * (height + MARGIN) + CURVE + MARGIN)
-        grid = {"nrows": views + 1, "height_ratios": [height] * views + [CURVE]}
-    else:
+        grid = {"mosaic": [[name] for name in [*names, "curve"]], "height_ratios": [height] * views + [CURVE]}
+    elif views == 1:
         width = HEIGHT / window.flatness
-        size = (views * (width + MARGIN) + 4.6, HEIGHT + MARGIN)
-        grid = {"ncols": views + 1, "width_ratios": [width] * views + [3.6]}
+        size = (width + WIDTH_OF_CURVE + 2 * MARGIN, HEIGHT + MARGIN)
+        grid = {"mosaic": [[0, "curve"]], "width_ratios": [width, WIDTH_OF_CURVE]}
+    else:
+        height = WIDTH_OF_CURVE * window.flatness
+        size = (views * (WIDTH_OF_CURVE + MARGIN), height + CURVE + 2 * MARGIN)
+        grid = {"mosaic": [names, ["curve"] * views], "height_ratios": [height, CURVE]}
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots(squeeze=False, **grid).ravel().tolist()
-    for each in axes:
+    axes = figure.subplot_mosaic(**grid)
+    for each in axes.values():
         each.tick_params(labelsize=plot.STYLE["tick"], direction="in", top=True, right=True, which="both")
-    return figure, axes[:-1], axes[-1]
+    return figure, [axes[name] for name in names], axes["curve"]
 
 
 def _window(scene: Application, every: list[Frame]) -> Window:
@@ -127,15 +133,15 @@ def _window(scene: Application, every: list[Frame]) -> Window:
     if scene.start == "cloud":
         return Window(-room, scene.domain.size[0] + room, -room, scene.domain.size[2] + room)
     frames = [first, last] if scene.start in ("pair", "single", "agglomerate") else [last]
-    outermost = OUTERMOST if scene.start == "agglomerate" else 0.0
+    left_out = [0.0, OUTERMOST] if scene.start == "agglomerate" else [0.0] * len(frames)
     sides = []
     for axis in (0, 2):
-        lows = [np.percentile(frame.positions[:, axis] - frame.radii, outermost) for frame in frames]
-        highs = [np.percentile(frame.positions[:, axis] + frame.radii, 100 - outermost) for frame in frames]
+        lows = [np.percentile(frame.positions[:, axis] - frame.radii, part) for frame, part in zip(frames, left_out, strict=True)]
+        highs = [np.percentile(frame.positions[:, axis] + frame.radii, 100 - part) for frame, part in zip(frames, left_out, strict=True)]
         sides.append((min(lows) - room, max(highs) + room))
     (left, right), (low, high) = sides
     if scene.wall:
-        low = -max(room, 0.04 * (right - left))
+        low = -0.05 * (right - left)
     return Window(float(left), float(right), float(low), float(high))
 
 
@@ -191,23 +197,21 @@ def _colours(scene: Application, frame: Frame) -> list[str]:
     clusters = frame.clusters
     sizes = np.bincount(clusters)
     ranks = {int(cluster): rank for rank, cluster in enumerate(np.argsort(-sizes, kind="stable"))}
-    return [
-        COLOURS[ranks[int(cluster)]] if ranks[int(cluster)] < len(COLOURS) and sizes[cluster] > 1 else GREY for cluster in clusters
-    ]
+    return [COLOURS[ranks[int(cluster)]] if ranks[int(cluster)] < len(COLOURS) and sizes[cluster] > 1 else GREY for cluster in clusters]
 
 
 def _what(scene: Application, first: Frame, frame: Frame, window: Window) -> str:
     unit, prefix = _prefix(frame.time)
     when = "start" if frame is first else f"after {frame.time / unit:.3g} {prefix}s"
     outside = int(np.count_nonzero(~window.holds(frame)))
-    left_out = f"; {outside} of {scene.number} spheres are outside" if outside else ""
+    seen = f"{outside} of {scene.number} spheres are outside" if outside else ""
     if scene.start in ("pair", "single"):
         return f"dashed: start; filled: {when}"
     if scene.start == "agglomerate":
-        return when if frame is first else f"{when}; coloured: the four largest fragments{left_out}"
+        return when if frame is first else f"{when}; coloured: the four largest fragments" + (f"\n{seen}" if seen else "")
     if scene.start == "cloud":
         return f"{when}; coloured: the four largest clusters;\ndotted: the periodic block"
-    return f"{when}{'; coloured: held by the tube' if scene.start == 'stream' else ''}{left_out}"
+    return f"{when}{'; coloured: held by the tube' if scene.start == 'stream' else ''}{f'; {seen}' if seen else ''}"
 
 
 def _over_time(axes: Axes, scene: Application, every: list[Frame]) -> None:
@@ -237,7 +241,7 @@ def _over_time(axes: Axes, scene: Application, every: list[Frame]) -> None:
 def _result(scene: Application, values: dict[str, float]) -> str:
     """What came out, in a few words."""
     if scene.start in ("pair", "single"):
-        stuck = "stuck together" if scene.start == "pair" else "stuck to the wall"
+        stuck = "stuck together" if scene.start == "pair" else f"stuck after {_length(values['distance_along_wall'])} along the wall"
         return f"result: {stuck}" if values["stuck"] else rf"result: rebound, $e_{{\rm eff}}$ = {values['e_eff']:.3f}"
     if scene.start == "agglomerate":
         return f"result: {values['fragments']:.0f} fragments, the largest of {values['largest_fragment_share'] * scene.number:.0f} spheres"
@@ -246,6 +250,11 @@ def _result(scene: Application, values: dict[str, float]) -> str:
     if scene.start == "rain":
         return f"result: packing fraction {values['packing_fraction']:.3f}, {values['coordination_number']:.2f} contacts per sphere"
     return f"result: {100 * values['captured_share']:.0f} % of the spheres, {100 * values['captured_mass_share']:.0f} % of the mass"
+
+
+def _length(value: float) -> str:
+    unit, prefix = _prefix(value)
+    return f"{value / unit:.3g} {prefix}m"
 
 
 def _prefix(value: float) -> tuple[float, str]:

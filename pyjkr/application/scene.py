@@ -138,7 +138,7 @@ class Domain(_Table):
 
 
 class Duration(_Table):
-    """How long, and what is kept: `frames` snapshots at even intervals. `seed` decides all that is random."""
+    """How long, and what is kept: `frames` snapshots at even intervals, or fewer, at least half. `seed` decides all that is random."""
 
     duration: Annotated[float, _quantity("s", "Give the time to simulate.", gt=0)]
     seed: Annotated[int, _quantity("", "Give any whole number.", ge=0)] = 1
@@ -210,6 +210,32 @@ class Application(_Table):
         return self
 
     @model_validator(mode="after")
+    def _start_has_what_it_needs(self) -> Application:
+        start = self.start
+        if any(entry.start != start for entry in self.particles):
+            raise _fault(f"particles start in several ways; the first is '{start}'. Let all start alike.")
+        shapes = WALL_OF[start]
+        if bool(shapes) != (self.wall is not None) or (self.wall and self.wall.shape not in shapes):
+            wanted = f"a [wall] with shape = '{shapes[0]}'. Add it" if shapes else "no [wall]. Remove it"
+            raise _fault(f"start = '{start}' wants {wanted}, or change the start.")
+        if (start in FILLED) != (self.domain is not None):
+            raise _fault(f"start = '{start}' {'needs [domain] with size. Add' if start in FILLED else 'has no [domain]. Remove'} it.")
+        axes = PERIODIC_OF.get(start, ())
+        if self.domain and tuple(sorted(self.domain.periodic)) != axes:
+            raise _fault(f"domain: start = '{start}' wants periodic = {list(axes)!r}. Change it.")
+        fixed = {"pair": 2, "single": 1}.get(start)
+        if fixed is not None and self.number != fixed:
+            raise _fault(f"particles: start = '{start}' has {fixed} sphere{'s' * (fixed > 1)}, not {self.number}. Change number.")
+        if start == "agglomerate" and len(self.particles) > 1:
+            raise _fault("particles: an agglomerate is built of equal spheres. Keep one [[particles]].")
+        moved = self.motion.spread if start == "cloud" else self.motion.speed
+        if moved == 0 and not (start == "rain" and self.motion.gravity > 0):
+            raise _fault(f"motion: start = '{start}' needs {'spread' if start == 'cloud' else 'speed'} > 0. Give it in m/s.")
+        if self.motion.angle > 0 and start not in ("single", "agglomerate"):
+            raise _fault(f"motion: angle belongs to start = 'single' or 'agglomerate', not '{start}'. Remove it.")
+        return self
+
+    @model_validator(mode="after")
     def _materials_and_contacts_match(self) -> Application:
         named = [(f"particles '{entry.name}'", entry.material) for entry in self.particles]
         named += [("wall", self.wall.material)] if self.wall else []
@@ -245,32 +271,6 @@ class Application(_Table):
         for name in spheres:
             if self.material[name].density is None:
                 raise _fault(f"material '{name}': density is missing. Give it in kg/m3.")
-        return self
-
-    @model_validator(mode="after")
-    def _start_has_what_it_needs(self) -> Application:
-        start = self.start
-        if any(entry.start != start for entry in self.particles):
-            raise _fault(f"particles start in several ways; the first is '{start}'. Let all start alike.")
-        shapes = WALL_OF[start]
-        if bool(shapes) != (self.wall is not None) or (self.wall and self.wall.shape not in shapes):
-            wanted = f"a [wall] with shape = '{shapes[0]}'. Add it" if shapes else "no [wall]. Remove it"
-            raise _fault(f"start = '{start}' wants {wanted}, or change the start.")
-        if (start in FILLED) != (self.domain is not None):
-            raise _fault(f"start = '{start}' {'needs [domain] with size. Add' if start in FILLED else 'has no [domain]. Remove'} it.")
-        axes = PERIODIC_OF.get(start, ())
-        if self.domain and tuple(sorted(self.domain.periodic)) != axes:
-            raise _fault(f"domain: start = '{start}' wants periodic = {list(axes)!r}. Change it.")
-        fixed = {"pair": 2, "single": 1}.get(start)
-        if fixed is not None and self.number != fixed:
-            raise _fault(f"particles: start = '{start}' has {fixed} sphere{'s' * (fixed > 1)}, not {self.number}. Change number.")
-        if start == "agglomerate" and len(self.particles) > 1:
-            raise _fault("particles: an agglomerate is built of equal spheres. Keep one [[particles]].")
-        moved = self.motion.spread if start == "cloud" else self.motion.speed
-        if moved == 0 and not (start == "rain" and self.motion.gravity > 0):
-            raise _fault(f"motion: start = '{start}' needs {'spread' if start == 'cloud' else 'speed'} > 0. Give it in m/s.")
-        if self.motion.angle > 0 and start not in ("single", "agglomerate"):
-            raise _fault(f"motion: angle belongs to start = 'single' or 'agglomerate', not '{start}'. Remove it.")
         return self
 
 

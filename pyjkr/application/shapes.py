@@ -112,7 +112,7 @@ def tube(radius: float, length: float, around: int) -> str:
     for index, step in itertools.product(range(around), range(along)):
         (x0, z0), (x1, z1) = circle[index], circle[(index + 1) % around]
         low, high = heights[step], heights[step + 1]
-        corners = ((x0, low, z0), (x0, high, z0), (x1, high, z1), (x1, low, z1))
+        corners = ((x0, low, z0), (x1, low, z1), (x1, high, z1), (x0, high, z0))
         angle = (index + 0.5) * 2 * math.pi / around
         for triangle in ((0, 1, 2), (0, 2, 3)):
             lines += [f"  facet normal {math.sin(angle)!r} 0.0 {math.cos(angle)!r}", "    outer loop"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -33,6 +34,17 @@ def changed(directory: Path, name: str, *changes: tuple[str, str]) -> Path:
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new)
+    path = directory / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def with_values(directory: Path, name: str, **values: object) -> Path:
+    """A shipped case with other values of keys, wherever they stand: no test hangs on the numbers of a case."""
+    text = CASES[name].read_text(encoding="utf-8")
+    for key, value in values.items():
+        text, count = re.subn(rf"(?m)^{key} = .*$", f"{key} = {value}", text)
+        assert count, key
     path = directory / "scene.toml"
     path.write_text(text, encoding="utf-8")
     return path

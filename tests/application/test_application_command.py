@@ -77,7 +77,8 @@ def test_impacts_are_planned_too_where_an_error_is_given(capsys):
     ("name", "changes", "told"),
     [
         ("dust_coagulation", [("radius = 0.5e-6 ", "radius = 2e-9 "), ("spread = 0.05 ", "spread = 0.5 "),
-                              ("[1.6e-5, 1.6e-5, 1.6e-5]", "[6.4e-8, 6.4e-8, 6.4e-8]"), ("surface_energy = 0.025", "surface_energy = 0.02")],
+                              ("[1.6e-5, 1.6e-5, 1.6e-5]", "[6.4e-8, 6.4e-8, 6.4e-8]"),
+                              ("surface_energy = 0.025", "surface_energy = 0.02")],
          "Tabor number"),
         ("head_on_pair", [("speed = 0.6 ", "speed = 60.0 ")], "beyond the small strain of JKR"),
         ("ash_on_tube", [("viscosity = 4e-5", "viscosity = 4.0")], "exceeds the"),

@@ -21,22 +21,22 @@ def test_shipped_case_reads_and_is_told_from_a_scene_of_impacts(name: str) -> No
 
 # What is changed in the scene of a break-up, and what the message must say.
 FAULTS = {
-    "unknown key": (("radius = 100e-6", "radus = 2.5e-6"), ["particles", "unknown key 'radus'", "Did you mean 'radius'?"]),
-    "unknown table": (('[motion]', '[motions]'), ["unknown key 'motions'", "Did you mean 'motion'?"]),
+    "unknown key": (("radius = ", "radus = "), ["particles", "unknown key 'radus'", "Did you mean 'radius'?"]),
+    "unknown table": (("[motion]", "[motions]"), ["unknown key 'motions'", "Did you mean 'motion'?"]),
     "unknown effect": (('about = "impact"', 'about = "impact"\n[effects]\nadhesoin = "on"'), ["effects", "'adhesion'"]),
     "wish": (('about = "impact"', 'about = "impact"\n[effects]\nneck = "yes"'), ["neck = 'yes'", "'auto', 'on' or 'off'"]),
-    "negative radius": (("radius = 100e-6", "radius = -2.5e-6"), ["radius = -2.5e-06 m", "must be > 0"]),
+    "negative radius": (("radius = ", "radius = -2.5e-6 # "), ["radius = -2.5e-06 m", "must be > 0"]),
     "about missing": (('about = "impact"', ""), ["about is missing", "'strength'"]),
     "about misspelt": (('about = "impact"', 'about = "strenght"'), ["about = 'strenght'", "Did you mean 'strength'?"]),
     "density": (("density = 1050.0", ""), ["material 'polystyrene'", "density is missing", "kg/m3"]),
     "modulus": (("youngs_modulus = 70e9", ""), ["material 'glass'", "youngs_modulus is missing", "Pa"]),
     "wrong wall": (('shape = "plane"', 'shape = "tube"\nradius = 1e-4\nlength = 2e-4'), ["wants a [wall] with shape = 'plane'"]),
     "tube size": (('shape = "plane"', 'shape = "tube"'), ["wall", "needs radius"]),
-    "domain": (('[run]', "[domain]\nsize = [1e-4, 1e-4, 1e-4]\n[run]"), ["'agglomerate' has no [domain]", "Remove"]),
-    "speed": (("speed = 1.5", "speed = 0.0"), ["needs speed > 0", "m/s"]),
+    "domain": (("[run]", "[domain]\nsize = [1e-4, 1e-4, 1e-4]\n[run]"), ["'agglomerate' has no [domain]", "Remove"]),
+    "speed": (("speed = ", "speed = 0.0 # "), ["needs speed > 0", "m/s"]),
     "material": (('material = "glass"', 'material = "steel"'), ["'steel'", "[material.steel]"]),
     "pair number": (('start = "agglomerate"', 'start = "pair"'), ["start = 'pair' wants no [wall]"]),
-    "two sizes": (("radius = 100e-6", "radii = [2.5e-6, 3e-6]\nshares = [0.5, 0.5]"), ["equal spheres", "radius instead of radii"]),
+    "two sizes": (("radius = ", "radii = [2.5e-6, 3e-6]\nshares = [0.5, 0.5] # "), ["equal spheres", "radius instead of radii"]),
     "contact missing": (('between = ["polystyrene", "glass"]', 'between = ["glass", "glass"]'), ["'glass'-'glass' never happens"]),
 }
 
