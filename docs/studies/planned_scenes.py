@@ -77,7 +77,7 @@ def measure(name: str, directory: Path) -> list[Planned]:
     plot.save(picture.picture(given, ways[f"{ERRORS[-1]:g}"], directory / name / f"{ERRORS[-1]:g}-0"), PAGE.parent / "figures" / f"planned-{name}.png")
     return [
         Planned(
-            name=name, plan=made, verification=verify.verify(made, directory / name / f"verify-{error:g}", simulator),
+            name=name, plan=made, verification=verify.verify(made, directory / name / f"verify-{error:g}", simulator, rolling_damping=given.numerics.rolling_damping),
             steps=steps[f"{error:g}"], loop_time=middle[f"{error:g}"], unreduced_steps=steps["unreduced"],
             unreduced_loop_time=middle["unreduced"], repeats=repeat, observables=found[f"{error:g}"], unreduced_observables=found["unreduced"],
         )
@@ -91,7 +91,7 @@ def table(every: list[Planned]) -> list[str]:
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for each in every:
-        made, rows = each.plan, [row for row in each.verification.rows if row.counts]
+        made, rows = each.plan, [row for row in each.verification.rows if row.limit is not None]
         worst = max(rows, key=lambda row: row.error)
         effects = ", ".join(decision.effect for decision in made.decisions if decision.on)
         good = each.verification.holds and each.speed_up >= WANTED[each.name]

@@ -40,11 +40,6 @@ class Ready:
     simulator: Simulator | None
 
     @property
-    def skin(self) -> float:
-        """Of the neighbour lists [m]: the scene's own, or that of the least wall time."""
-        return self.scene.numerics.skin or self.estimate.neighbours.skin
-
-    @property
     def comments(self) -> tuple[str, ...]:
         """For the head of the deck."""
         return table.comments(self.plan)
@@ -82,7 +77,9 @@ def prepare(path: Path, max_error: float, *, with_simulator: bool = False) -> Re
         simulator = None
     for warning in made.warnings:
         print(f"pyjkr: warning: {warning}", file=sys.stderr)
-    return Ready(read, made, variants.planned(made), estimate.estimate(made, cost_model.load(simulator)), simulator)
+    variant = variants.planned(made)
+    cost = estimate.estimate(made, cost_model.load(simulator), around=deck.around(read, variant))
+    return Ready(read, made, variant, cost, simulator)
 
 
 def run_plan(path: Path, options: argparse.Namespace) -> None:
@@ -112,7 +109,7 @@ def run_deck(path: Path, options: argparse.Namespace) -> None:
     if options.output:
         print(write(ready, options.output))
     else:
-        print(deck.render(ready.scene, ready.variant, comments=ready.comments, skin=ready.skin), end="")
+        print(deck.render(ready.scene, ready.variant, comments=ready.comments), end="")
 
 
 def run_run(path: Path, options: argparse.Namespace) -> None:
@@ -123,7 +120,7 @@ def run_run(path: Path, options: argparse.Namespace) -> None:
     directory = options.output or Path("results") / name_of(path)
     if options.dry_run:
         print(f"# cd '{directory}' && liggghts-jkr -in {deck.DECK_NAME}")
-        print(deck.render(ready.scene, ready.variant, comments=ready.comments, skin=ready.skin))
+        print(deck.render(ready.scene, ready.variant, comments=ready.comments))
         return
     directory.mkdir(parents=True, exist_ok=True)
     for name in (RESULT_NAME, EVOLUTION_NAME, PICTURE_NAME):
@@ -131,7 +128,7 @@ def run_run(path: Path, options: argparse.Namespace) -> None:
     if path.resolve() != (directory / SCENE_COPY).resolve():
         shutil.copyfile(path, directory / SCENE_COPY)
     run = deck.simulate(
-        ready.scene, ready.variant, directory, comments=ready.comments, skin=ready.skin, ranks=options.np,
+        ready.scene, ready.variant, directory, comments=ready.comments, ranks=options.np,
         progress=False if options.no_progress else None, simulator=ready.simulator,
     )  # fmt: skip
     analysis.evolution(ready.scene, ready.variant, directory).to_csv(directory / EVOLUTION_NAME, index=False)
@@ -149,7 +146,7 @@ def run_run(path: Path, options: argparse.Namespace) -> None:
 
 def write(ready: Ready, directory: Path) -> Path:
     """Write the deck with what it reads, and the plan beside it; return the deck's path."""
-    path = deck.write(ready.scene, ready.variant, directory, comments=ready.comments, skin=ready.skin)
+    path = deck.write(ready.scene, ready.variant, directory, comments=ready.comments)
     (directory / PLAN_NAME).write_text(f"{table.text(ready.plan)}\n\n{cost_text(ready)}\n", encoding="utf-8")
     (directory / EXPLANATION_NAME).write_text(table.explain(ready.plan) + "\n", encoding="utf-8")
     return path
@@ -159,15 +156,13 @@ def cost_text(ready: Ready) -> str:
     """Estimated steps, wall time and speed-up, one line each."""
     cost = ready.estimate
     origin = "" if cost.origin == "measured" else "; times of another machine, `pyjkr cost --calibrate` measures this one"
-    lists = cost.neighbours
+    lists = deck.neighbour_lists(ready.scene, ready.variant)
     return "\n".join(
         [
             f"estimated cost: {cost.steps} steps, {_duration(cost.wall_time)}{origin}",
             f"unreduced (E_mod = E, 50 steps per collision, all effects): {cost.unreduced_steps} steps,"
             f" {_duration(cost.unreduced_wall_time)}; planned is {cost.speed_up:.3g} times faster",
-            f"neighbour lists: skin {ready.skin:.3g} m ({lists.limit}), made anew every {1 / lists.rebuild_rate:.3g} steps"
-            if lists.rebuild_rate > 0
-            else f"neighbour lists: skin {ready.skin:.3g} m ({lists.limit})",
+            f"neighbour lists: skin {lists.skin:.3g} m ({lists.limit}), made anew every {1 / lists.rebuild_rate:.3g} steps",
         ]
     )
 
@@ -181,9 +176,10 @@ def _verify(ready: Ready, directory: Path, progress: bool) -> None:
     from pyjkr.planning import verify
 
     with of_steps("probes", progress) as report:
-        found = verify.verify(ready.plan, directory / "verify", ready.simulator, report)
+        damping = ready.scene.numerics.rolling_damping
+        found = verify.verify(ready.plan, directory / "verify", ready.simulator, report, rolling_damping=damping)
     print()
-    print(verify.text(found, ready.plan))
+    print(verify.text(found))
     _write_json(directory / VERIFICATION_NAME, verify.to_json(found))
     print(f"pyjkr: wrote {directory / VERIFICATION_NAME}", file=sys.stderr)
     if not found.holds:

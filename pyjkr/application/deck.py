@@ -14,10 +14,14 @@ from pathlib import Path
 import jinja2
 
 from pyjkr import resources
-from pyjkr.application import laws, places, shapes
+from pyjkr.application import laws, places, shapes, situation
 from pyjkr.application.laws import Law
 from pyjkr.application.places import Spheres
 from pyjkr.application.scene import Application
+from pyjkr.planning import estimate, neighbours
+from pyjkr.planning.cost_model import SHIPPED
+from pyjkr.planning.estimate import Around
+from pyjkr.planning.neighbours import Neighbours
 from pyjkr.planning.variants import Variant
 from pyjkr.run import Run, read_run, run_deck
 from pyjkr.simulator import Simulator
@@ -28,8 +32,6 @@ SPHERES_NAME, CONTACTS_NAME = "spheres.dump", "contacts.dump"
 INLINE = 2
 # Joins the lines of one command.
 CONTINUED = " &\n" + 17 * " "
-# Skin of the neighbour lists in radii of the largest sphere, and in necks; bins of the whole domain at most, a few bytes each.
-SKIN_IN_RADII, SKIN_IN_NECKS, MOST_BINS = 0.4, 2.0, 2e6
 ROUND_OFF = 1e-12
 # Facets around a tube, 5 degrees each.
 FACETS = 72
@@ -42,7 +44,7 @@ MESH_PRECISION, MESH_CURVATURE = 1e-13, 1e-3
 
 
 def render(
-    scene: Application, variant: Variant, *, comments: Sequence[str] = (), skin: float | None = None, duration: float | None = None
+    scene: Application, variant: Variant, *, comments: Sequence[str] = (), duration: float | None = None
 ) -> str:
     """Text of the LIGGGHTS deck of a scene.
 
@@ -54,8 +56,6 @@ def render(
         Which effects, how soft, and the time step.
     comments : sequence of str
         For the head of the deck: why.
-    skin : float, optional
-        Of the neighbour lists [m]; None takes that of the scene, or 0.4 radii and two necks.
     duration : float, optional
         In place of that of the scene [s].
 
@@ -64,11 +64,11 @@ def render(
     PlanError
         Where an effect that is on lacks its property.
     """
-    return next(text for name, text in files(scene, variant, comments=comments, skin=skin, duration=duration) if name == DECK_NAME)
+    return next(text for name, text in files(scene, variant, comments=comments, duration=duration) if name == DECK_NAME)
 
 
 def files(
-    scene: Application, variant: Variant, *, comments: Sequence[str] = (), skin: float | None = None, duration: float | None = None
+    scene: Application, variant: Variant, *, comments: Sequence[str] = (), duration: float | None = None
 ) -> Iterator[tuple[str, str]]:
     """Name and text of each file that a run needs, the deck last; parameters as for `render`."""
     law = laws.law(scene, variant)
@@ -77,23 +77,23 @@ def files(
         yield DATA_NAME, data_file(scene, start)
     if scene.wall and scene.wall.shape == "tube":
         yield MESH_NAME, shapes.tube(scene.wall.radius, scene.wall.length, FACETS)
-    yield DECK_NAME, _text(scene, law, start, comments, skin, duration)
+    yield DECK_NAME, _text(scene, law, start, comments, duration)
 
 
 def write(
-    scene: Application, variant: Variant, directory: Path, *, comments: Sequence[str] = (), skin: float | None = None,
+    scene: Application, variant: Variant, directory: Path, *, comments: Sequence[str] = (),
     duration: float | None = None,
 ) -> Path:  # fmt: skip
     """Write the deck, and the data file and mesh that it reads; return the deck's path.
 
     Parameters
     ----------
-    scene, variant, comments, skin, duration
+    scene, variant, comments, duration
         As for `render`.
     directory : Path
         Made where it is missing.
     """
-    written = dict(files(scene, variant, comments=comments, skin=skin, duration=duration))
+    written = dict(files(scene, variant, comments=comments, duration=duration))
     directory.mkdir(parents=True, exist_ok=True)
     for name, text in written.items():
         (directory / name).write_text(text, encoding="utf-8")
@@ -101,14 +101,14 @@ def write(
 
 
 def simulate(
-    scene: Application, variant: Variant, directory: Path, *, comments: Sequence[str] = (), skin: float | None = None,
+    scene: Application, variant: Variant, directory: Path, *, comments: Sequence[str] = (),
     duration: float | None = None, ranks: int = 1, progress: bool | None = None, simulator: Simulator | None = None,
 ) -> Run:  # fmt: skip
     """Run the deck of a scene, unless its whole run lies in the directory already.
 
     Parameters
     ----------
-    scene, variant, directory, comments, skin, duration
+    scene, variant, directory, comments, duration
         As for `write`.
     ranks, progress, simulator
         As for `run_deck`.
@@ -118,13 +118,13 @@ def simulate(
     RunError
         As `run_deck`.
     """
-    wanted = dict(files(scene, variant, comments=comments, skin=skin, duration=duration))
+    wanted = dict(files(scene, variant, comments=comments, duration=duration))
     kept = read_run(directory)
     if kept and kept.ranks == ranks and all(_reads(directory / name, text) for name, text in wanted.items()):
         return kept
     for name in (SPHERES_NAME, CONTACTS_NAME):
         (directory / name).unlink(missing_ok=True)
-    deck = write(scene, variant, directory, comments=comments, skin=skin, duration=duration)
+    deck = write(scene, variant, directory, comments=comments, duration=duration)
     return run_deck(deck, ranks=ranks, total_steps=steps(scene, variant, duration)[0], progress=progress, simulator=simulator)
 
 
@@ -143,9 +143,34 @@ def steps(scene: Application, variant: Variant, duration: float | None = None) -
     return math.ceil(needed / interval) * interval, interval
 
 
-def default_skin(scene: Application, law: Law) -> float:
-    """Skin of the neighbour lists [m]: 0.4 radii of the largest sphere, and two necks, so that no wall list loses one."""
-    return scene.numerics.skin or max(SKIN_IN_RADII * scene.radii[1], SKIN_IN_NECKS * law.neck)
+def neighbour_lists(scene: Application, variant: Variant, start: Spheres | None = None) -> Neighbours:
+    """Skin and bins of the least wall time, or the skin of the scene; by the shipped costs, so that a deck is the same everywhere.
+
+    Parameters
+    ----------
+    scene, variant
+        As for `render`.
+    start : Spheres, optional
+        Where the spheres start, where that is known already.
+    """
+    start = start or places.spheres(scene, laws.law(scene, variant))
+    around = estimate.surroundings(situation.situation(scene), variant, math.prod(high - low for low, high in places.box(scene, start)))
+    if scene.numerics.skin:
+        return neighbours.at(scene.numerics.skin, around, SHIPPED, "as the scene says")
+    return neighbours.choose(around, SHIPPED)
+
+
+def around(scene: Application, variant: Variant) -> Around:
+    """What costs time beside the contacts: frames, fixes that push, triangles, an empty box, periodic pairs."""
+    start = places.spheres(scene, laws.law(scene, variant))
+    bounds = places.box(scene, start)
+    return Around(
+        frames=scene.run.frames,
+        forces=int(variant.styles.gravity and scene.motion.gravity > 0) + 2 * len(start.size_classes) * bool(scene.gas),
+        triangles=2 * FACETS if scene.wall and scene.wall.shape == "tube" else 0,
+        box_volume=math.prod(high - low for low, high in bounds),
+        periodic_lengths=tuple(high - low for (low, high), periodic in zip(bounds, scene.periodic, strict=True) if periodic),
+    )
 
 
 def data_file(scene: Application, start: Spheres) -> str:
@@ -162,7 +187,7 @@ def data_file(scene: Application, start: Spheres) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _text(scene: Application, law: Law, start: Spheres, comments: Sequence[str], skin: float | None, duration: float | None) -> str:
+def _text(scene: Application, law: Law, start: Spheres, comments: Sequence[str], duration: float | None) -> str:
     variant = law.variant
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(resources.directory("templates")),
@@ -174,9 +199,8 @@ def _text(scene: Application, law: Law, start: Spheres, comments: Sequence[str],
     )
     environment.filters |= {"plain": _plain, "numbers": _numbers}
     materials, bounds = scene.materials, places.box(scene, start)
-    volume = math.prod(high - low for low, high in bounds)
     total, interval = steps(scene, variant, duration)
-    chosen = _rounded_up(skin or default_skin(scene, law))
+    lists = neighbour_lists(scene, variant, start)
     inline = len(start.radii) <= INLINE
 
     def matrix(value: str | Callable) -> str:
@@ -198,8 +222,8 @@ def _text(scene: Application, law: Law, start: Spheres, comments: Sequence[str],
         data_file="" if inline else DATA_NAME,
         digest="" if inline else hashlib.sha256(data_file(scene, start).encode()).hexdigest()[:16],
         spheres=_inline(scene, start) if inline else [],
-        skin=chosen,
-        bin_size=_rounded_up(max(0.5 * (2 * scene.radii[1] + chosen), (volume / MOST_BINS) ** (1 / 3))),
+        skin=_rounded_up(lists.skin),
+        bin_size=_rounded_up(lists.bin_size),
         moduli=[scene.material[name].youngs_modulus for name in materials],
         moduli_mod=[law.youngs_modulus(name) for name in materials],
         poissons_ratios=[scene.material[name].poissons_ratio for name in materials],

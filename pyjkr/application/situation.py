@@ -17,9 +17,9 @@ from pyjkr.application.scene import Application
 from pyjkr.contact import PairProperties
 from pyjkr.planning.situation import EFFECTS, Meeting, Situation
 
-# Contacts per particle that the starts lead to: chains and small clusters; a bed of spheres with friction, walls and
+# Contacts that a sphere counts, to which the starts lead: chains and small clusters; a bed of spheres with friction, walls and
 # surface counted (isostatic 4 to 6); a thin deposit.
-CONTACTS = {"pair": 0.5, "single": 1.0, "cloud": 1.0, "rain": 2.5, "stream": 1.0}
+CONTACTS = {"pair": 1.0, "single": 1.0, "cloud": 2.0, "rain": 5.0, "stream": 2.0}
 # A stream meets its tube at all angles; half of what could hit does so at more than 60 degrees from the normal on the upper side
 # of the tube where x > 0.87 of its radius. Slower normal approaches than v cos 60 are rare and stick anyway.
 SLOWEST_SHARE_OF_STREAM = 0.5
@@ -177,4 +177,4 @@ def _contacts(scene: Application, start: places.Spheres) -> float:
         return CONTACTS[scene.start]
     apart = np.linalg.norm(start.positions[:, None] - start.positions[None], axis=2)
     touching = apart < 2 * start.radii[0] * (1 + 1e-9)
-    return float(touching.sum() - len(apart)) / 2 / len(apart)
+    return float(touching.sum() - len(apart)) / len(apart)

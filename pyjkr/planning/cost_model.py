@@ -174,6 +174,14 @@ def parts(styles: str) -> tuple[str, ...]:
     return tuple(found)
 
 
+def text(model: CostModel) -> str:
+    """The coefficients as a table for a terminal."""
+    rows = [(name, value) for name, value in asdict(model).items() if isinstance(value, float)]
+    rows += [(f"a contact, {part}", time) for part, time in model.laws.items()]
+    width = max(len(name) for name, _ in rows)
+    return "\n".join([f"{model.origin}: {model.machine or 'another machine'}", *(f"{name:<{width}}  {value:.3g} s" for name, value in rows)])
+
+
 def machine_name() -> str:
     """Name of this machine and of its processor."""
     try:
@@ -207,7 +215,9 @@ def store(model: CostModel, file: Path | None = None) -> Path:
         unfinished.write_text(json.dumps(asdict(model), indent=1) + "\n", encoding="utf-8")
         unfinished.replace(file)
     except OSError as error:
-        raise PlanError(f"{file}: the cost model cannot be kept: {error.strerror}. Set XDG_CACHE_HOME to a directory you may write.") from None
+        raise PlanError(
+            f"{file}: the cost model cannot be kept: {error.strerror}. Set XDG_CACHE_HOME to a directory you may write."
+        ) from None
     return file
 
 
@@ -234,28 +244,28 @@ def load(simulator: Simulator | None, file: Path | None = None) -> CostModel:
 
 # Measured by `timing.calibrate` on two cores of a virtual machine with AVX2; of another machine they give the order.
 SHIPPED = CostModel(
-    step=1.2e-7,
-    sphere=1.5e-8,
-    idle=6.2e-9,
+    step=1.5e-7,
+    sphere=1.1e-8,
+    idle=6.0e-9,
     rebuild_sphere=1.1e-7,
-    rebuild_candidate=3.6e-9,
-    rebuild_bin=2e-10,
-    force=5e-9,
+    rebuild_candidate=4.1e-9,
+    rebuild_bin=2.9e-10,
+    force=4.9e-9,
     # Of a scene with a tube, with and without it.
     triangle=1.2e-7,
     frame=1e-5,
-    frame_sphere=2e-6,
-    start=0.05,
-    message=5.8e-7,
-    ghost=1.3e-7,
+    frame_sphere=1.9e-6,
+    start=0.045,
+    message=2.0e-7,
+    ghost=1.4e-7,
     laws={
         "model hertz": 3.55e-8,
         "model jkr/simplified": 3.27e-8,
         "model jkr": 3.6e-8,
-        "tangential history": 4.8e-9,
+        "tangential history": 4.7e-9,
         "tangential jkr": 3.0e-8,
-        "rolling_friction epsd2": 1.54e-8,
-        "rolling_friction krijt": 1.08e-8,
+        "rolling_friction epsd2": 1.6e-8,
+        "rolling_friction krijt": 1.04e-8,
         "twisting on": 1.5e-9,
     },
     origin="shipped",

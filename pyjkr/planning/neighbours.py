@@ -15,7 +15,8 @@ from pyjkr.errors import PlanError
 from pyjkr.planning.cost_model import CostModel
 
 # The lists of primitive walls hold the spheres within the skin: a neck must not reach out of it.
-SKIN_IN_NECKS = 1.1
+# Some versions take half of it there.
+SKIN_IN_NECKS = 2.2
 # At rest no skin is too short; ours.
 LEAST_SKIN_IN_RADII = 0.02
 # Longer skins than that reach past the next sphere and ask for more room at periodic boundaries than small scenes have; ours.

@@ -6,6 +6,7 @@ Assumes one material for all spheres and the wall, whose pair has the effective 
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import math
 from collections.abc import Sequence
@@ -172,19 +173,10 @@ def render(deck: ProbeDeck, program: str = "") -> tuple[str, str]:
         Digest of the simulator: the deck of another build is another deck, so its run is not taken for this one's.
     """
     data = _data(deck)
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(resources.directory("templates")),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        finalize=lambda value: repr(float(value)) if isinstance(value, float) else value,
-    )
-    environment.filters["plain"] = lambda text: "".join(c if c.isprintable() else "?" for c in text).replace("&", "+")
     search = 2 * max(sphere.radius for sphere in deck.spheres) + deck.skin
     longest = max(high - low for low, high in zip(deck.box[::2], deck.box[1::2], strict=True))
     styles, keywords = split(deck.styles)
-    text = environment.get_template(TEMPLATE).render(
+    text = _template().render(
         deck=deck,
         styles=styles,
         keywords=keywords,
@@ -244,6 +236,21 @@ def program_digest(simulator: Simulator) -> str:
         if file:
             digest.update(file.read_bytes())
     return digest.hexdigest()[:12]
+
+
+@functools.cache
+def _template() -> jinja2.Template:
+    """Compiled once: a verification renders a hundred decks."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(resources.directory("templates")),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        finalize=lambda value: repr(float(value)) if isinstance(value, float) else value,
+    )
+    environment.filters["plain"] = lambda text: "".join(c if c.isprintable() else "?" for c in text).replace("&", "+")
+    return environment.get_template(TEMPLATE)
 
 
 def _forces(deck: ProbeDeck) -> list[tuple[list[int], Vector]]:

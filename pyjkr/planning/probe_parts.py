@@ -76,15 +76,12 @@ class Probe:
         Variant -> deck.
     read : callable
         Frames and variant -> quantities.
-    reference_steps : int
-        Steps per collision of its reference; 0 for those of `variants.reference`.
     """
 
     label: str
     meeting: Meeting
     deck: Callable[[Variant], ProbeDeck]
     read: Callable[[pd.DataFrame, Variant], list[Quantity]] = field(repr=False)
-    reference_steps: int = 0
 
 
 def material(variant: Variant, meeting: Meeting) -> Material:

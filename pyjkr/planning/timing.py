@@ -6,6 +6,7 @@ Assumes that the machine may be busy: of several runs of a deck the fastest coun
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import re
@@ -171,7 +172,9 @@ def beds(ranks: bool) -> list[Bed]:
     few = [Bed(styles=LAWS[1], edge=edge, distance=APART, skin=0.1, steps=steps, runs=20) for edge, steps in ((2, 500), (4, 500), (10, 50))]
     few += [Bed(styles=LAWS[1], edge=5, distance=APART, skin=0.1, steps=200, runs=20, pushed=True)]
     few += [Bed(styles=LAWS[1], edge=edge, distance=APART, skin=0.1, steps=10, runs=10, written=True) for edge in (2, 8)]
-    shared = [Bed(styles=FULL, edge=edge, distance=TOUCHING, skin=0.1, steps=steps, runs=10, ranks=2) for edge, steps in ((6, 200), (12, 40))]
+    shared = [
+        Bed(styles=FULL, edge=edge, distance=TOUCHING, skin=0.1, steps=steps, runs=10, ranks=2) for edge, steps in ((6, 200), (12, 40))
+    ]
     return touching + idle + lists + few + (shared if ranks else [])
 
 
@@ -181,8 +184,10 @@ def idle_machine() -> bool:
     return cores > 1 and os.getloadavg()[0] < cores - 1
 
 
-def calibrate(simulator: Simulator, directory: Path | None = None, report: Callable[[int, int], None] = lambda done, all: None) -> CostModel:
-    """Measure the coefficients on this machine; takes some ten seconds.
+def calibrate(
+    simulator: Simulator, directory: Path | None = None, report: Callable[[int, int], None] = lambda done, all: None
+) -> CostModel:
+    """Measure the coefficients on this machine; takes some five seconds.
 
     Parameters
     ----------
@@ -324,7 +329,7 @@ def read_log(text: str) -> list[dict[str, float]]:
     """
     starts = [match.start() for match in _LOOP.finditer(text)]
     blocks = []
-    for start, end in zip(starts, [*starts[1:], len(text)], strict=True):
+    for start, end in itertools.pairwise([*starts, len(text)]):
         block = text[start:end]
         builds = _BUILDS.search(block)
         if builds:

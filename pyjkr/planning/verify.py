@@ -9,17 +9,21 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from pyjkr.planning import probe_deck, timing, variants
 from pyjkr.planning.plan import ApplicationPlan
-from pyjkr.planning.probes import Probe, Quantity, probes
+from pyjkr.planning.probe_parts import Probe, Quantity
+from pyjkr.planning.probes import not_probed, probes
 from pyjkr.planning.situation import Situation
 from pyjkr.planning.variants import Variant
+from pyjkr.planning.verification import Row, Verification, text, to_json
 from pyjkr.simulator import Simulator
+
+__all__ = ["Row", "Verification", "compare", "run_probe", "step_times", "text", "to_json", "verify"]
 
 # The bed that is timed: spheres along its edge, steps of a run, runs of a start, starts in turn.
 BED_EDGE, BED_STEPS, BED_RUNS, BED_TURNS = 8, 20, 10, 3
@@ -27,66 +31,10 @@ BED_EDGE, BED_STEPS, BED_RUNS, BED_TURNS = 8, 20, 10, 3
 BED_FROM = 1.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """One quantity of one probe.
-
-    Attributes
-    ----------
-    probe, quantity : str
-        What was looked at.
-    planned, reference : float
-        Values where they differ most.
-    error : float
-        Largest difference: in parts of the impact's energy (e_eff^2) or speed, of the reference's value (yield moment, coordination),
-        of the diameter (overlap); parts of the phases that were decided differently (sticking, held).
-    limit : float
-        `max_error`, or 0 for decisions.
-    holds : bool
-        Whether the error is within it.
-    """
-
-    probe: str
-    quantity: str
-    planned: float
-    reference: float
-    error: float
-    limit: float
-    holds: bool
-
-
-@dataclass(frozen=True, kw_only=True)
-class Verification:
-    """What the probes found.
-
-    Attributes
-    ----------
-    rows : tuple of Row
-        Every quantity.
-    planned_step_time, unreduced_step_time : float
-        Of one step and sphere in a bed, measured in turn [s].
-    planned_wall_time, unreduced_wall_time : float
-        Of the scene's spheres over its duration, at that pace [s].
-    speed_up : float
-        Unreduced over planned, for the same simulated time.
-    """
-
-    rows: tuple[Row, ...]
-    planned_step_time: float
-    unreduced_step_time: float
-    planned_wall_time: float
-    unreduced_wall_time: float
-    speed_up: float
-
-    @property
-    def holds(self) -> bool:
-        """Whether every error is within its limit."""
-        return all(row.holds for row in self.rows)
-
-
 def verify(
-    plan: ApplicationPlan, directory: Path, simulator: Simulator, report: Callable[[int, int], None] = lambda done, all: None
-) -> Verification:
+    plan: ApplicationPlan, directory: Path, simulator: Simulator, report: Callable[[int, int], None] = lambda done, all: None, *,
+    rolling_damping: float = 0.0,
+) -> Verification:  # fmt: skip
     """Run the probes of a plan.
 
     Parameters
@@ -99,6 +47,8 @@ def verify(
         LIGGGHTS to use.
     report : callable
         Told how many probes are done, of how many.
+    rolling_damping : float
+        Of `rolling_friction krijt`, over critical, as the scene sets it.
 
     Raises
     ------
@@ -106,7 +56,10 @@ def verify(
         Where a run fails or its dump is not whole.
     """
     situation, planned = plan.situation, variants.planned(plan)
-    wanted = probes(situation, planned)
+    if planned.styles.rolling_friction == "epsd2":
+        # Stock rolling belongs to no JKR contact: a coefficient that probes do not know, and no promise.
+        planned = replace(planned, styles=replace(planned.styles, rolling_friction="off"))
+    wanted = probes(situation, plan.max_error, rolling_damping)
     rows: list[Row] = []
     for done, probe in enumerate(wanted, start=1):
         rows += run_probe(probe, planned, variants.reference(situation, probe.meeting), plan.max_error, directory, simulator)
@@ -115,7 +68,11 @@ def verify(
     soft, real = step_times(situation, (planned, unreduced), directory, simulator)
     duration = situation.time * situation.particles
     return Verification(
+        title=situation.title,
+        max_error=plan.max_error,
+        budget=dict(plan.budget),
         rows=tuple(rows),
+        not_probed=not_probed(situation),
         planned_step_time=soft,
         unreduced_step_time=real,
         planned_wall_time=duration / planned.time_step * soft,
@@ -145,13 +102,16 @@ def run_probe(
         deck = probe.deck(variant)
         run = probe_deck.execute(deck, directory / variant.name / _folder(probe.label), simulator)
         found.append(probe.read(probe_deck.frames(deck, run), variant))
-    return [_row(probe.label, ours, theirs, max_error) for ours, theirs in zip(*found, strict=True)]
+    rows = (compare(probe.label, ours, theirs, max_error) for ours, theirs in zip(*found, strict=True))
+    return [row for row in rows if row]
 
 
 def step_times(
     situation: Situation, ways: tuple[Variant, ...], directory: Path, simulator: Simulator
 ) -> tuple[float, ...]:
     """Wall time [s] of one step and sphere in each variant: starts of LIGGGHTS in turn, of each the fastest run.
+
+    Whatever else the machine does only adds time, and in turn it does so to all alike.
 
     Parameters
     ----------
@@ -174,16 +134,32 @@ def step_times(
     return tuple(min(times[variant.name]) for variant in ways)
 
 
-def _row(label: str, ours: Quantity, theirs: Quantity, max_error: float) -> Row:
+def compare(label: str, ours: Quantity, theirs: Quantity, max_error: float) -> Row | None:
+    """Values of the plan and of the reference as a row; None where one of them has none, for a decision beside it tells."""
+    if ours.decision:
+        return _decided(label, ours, theirs, max_error)
     errors = np.abs(ours.values - theirs.values)
     if ours.relative:
-        errors = np.where(errors > 0, errors / np.abs(theirs.values), 0.0)
-    worst = int(np.argmax(errors))
-    error = float(np.mean(errors > 0)) if ours.exact else float(errors[worst])
-    limit = 0.0 if ours.exact else max_error
+        errors = np.where(errors > 0, errors / np.maximum(np.abs(theirs.values), theirs.floor), errors)
+    if np.isnan(errors).all():
+        return None
+    worst = int(np.nanargmax(errors))
     return Row(
         probe=label, quantity=ours.name, planned=float(ours.values[worst]), reference=float(theirs.values[worst]),
-        error=error, limit=limit, holds=bool(error <= limit),
+        error=float(errors[worst]), limit=max_error if ours.promised else None, note=ours.note,
+    )  # fmt: skip
+
+
+def _decided(label: str, ours: Quantity, theirs: Quantity, max_error: float) -> Row:
+    differ = ours.values != theirs.values
+    clear, note = differ, ""
+    if ours.margin is not None:
+        clear = differ & (np.maximum(ours.margin, theirs.margin) > max_error)
+        near = np.count_nonzero(differ & ~clear)
+        note = f"{near} of {len(differ)} on the threshold, leaving with less than max_error of the energy" if near else ""
+    return Row(
+        probe=label, quantity=ours.name, planned=float(np.mean(ours.values)), reference=float(np.mean(theirs.values)),
+        error=float(np.mean(clear)), limit=0.0, note=note,
     )  # fmt: skip
 
 

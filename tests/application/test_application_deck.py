@@ -10,6 +10,7 @@ import pytest
 from application_scenes import ALL, NAMES, changed, scene_of, variant, with_values
 
 from pyjkr.application import deck, places, scene, situation
+from pyjkr.application.scene import Application
 from pyjkr.errors import PlanError
 from pyjkr.planning import plan, table, variants
 
@@ -207,11 +208,15 @@ def test_numbers_are_short_and_keep_twelve_digits() -> None:
     assert deck._number("all") == "all"
 
 
+def with_skin(given: Application, skin: float) -> Application:
+    return given.model_copy(update={"numerics": given.numerics.model_copy(update={"skin": skin})})
+
+
 def test_skin_and_bins_are_short_numbers_and_never_below_what_was_asked_for() -> None:
     given = scene_of("ash_on_tube")
-    text = deck.render(given, variant(given), skin=1.2345678e-6)
+    text = deck.render(with_skin(given, 1.2345678e-6), variant(given))
     assert "neighbor         1.24e-6 bin" in text
-    assert "neighbor         1.2e-6 bin" in deck.render(given, variant(given), skin=1.2e-6)
+    assert "neighbor         1.2e-6 bin" in deck.render(with_skin(given, 1.2e-6), variant(given))
     # Half of what a sphere looks for: its diameter and the skin.
     (size,) = [line.split()[-1] for line in commands(text) if line.startswith("neigh_modify")]
     assert float(size) >= 0.5 * (2 * given.radii[1] + 1.24e-6)
