@@ -158,8 +158,8 @@ def test_a_scene_in_liggghts_has_the_contacts_and_makes_the_lists_that_are_estim
     dust = scene.load(directory("cases") / "dust_coagulation" / "scene.toml")
     where = of_scene(dust)
     variant = variants.planned(plan(where))
-    lists = neighbours.choose(estimate.surroundings(where, variant), SHIPPED)
-    run = deck.simulate(dust, variant, tmp_path, skin=lists.skin, simulator=plugin, progress=False)
+    lists = deck.neighbour_lists(dust, variant)
+    run = deck.simulate(dust, variant, tmp_path, simulator=plugin, progress=False)
     log = run.log.read_text()
     builds = int(re.search(r"Neighbor list builds = (\d+)", log)[1])
     assert "Dangerous builds = 0" in log
