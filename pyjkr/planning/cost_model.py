@@ -179,7 +179,8 @@ def text(model: CostModel) -> str:
     rows = [(name, value) for name, value in asdict(model).items() if isinstance(value, float)]
     rows += [(f"a contact, {part}", time) for part, time in model.laws.items()]
     width = max(len(name) for name, _ in rows)
-    return "\n".join([f"{model.origin}: {model.machine or 'another machine'}", *(f"{name:<{width}}  {value:.3g} s" for name, value in rows)])
+    lines = [f"{name:<{width}}  {value:.3g} s" for name, value in rows]
+    return "\n".join([f"{model.origin}: {model.machine or 'another machine'}", *lines])
 
 
 def machine_name() -> str:
