@@ -29,7 +29,7 @@ from pyjkr.run import find_simulator  # noqa: E402
 PAGE = HERE.parent / "break-up.md"
 SEEDS = range(1, 13)
 # Radius [m] and speed [m/s] of 150 spheres of polystyrene, from hardly broken to shattered.
-IMPACTS = ((2.5e-6, 3.0), (50e-6, 0.25), (50e-6, 0.5), (50e-6, 1.0), (100e-6, 1.5))
+IMPACTS = ((2.5e-6, 3.0), (50e-6, 0.25), (50e-6, 0.5), (50e-6, 1.0), (150e-6, 1.5))
 RATIOS = (1.0, 0.1, 0.01)
 STEPS = 20
 
