@@ -68,7 +68,7 @@ def _load(name: str):
 
     path = _path(name)
     if _many(name):
-        raise SceneError(f"{path}: is a scene of many particles; this verb takes impacts of one pair. `pyjkr plan`, `deck` and `run` take both.")
+        raise SceneError(f"{path}: is a scene of many particles; this verb takes impacts of one pair. Use `pyjkr plan`, `deck` or `run`.")
     scene = load(path)
     try:
         made = plan(scene)
@@ -111,7 +111,7 @@ def _plan(options: argparse.Namespace) -> None:
         return
     for name in ("verify", "output"):
         if getattr(options, name):
-            raise SceneError(f"{options.scene}: --{name} belongs to scenes of many particles; `pyjkr run` compares impacts with the oracle.")
+            raise SceneError(f"{options.scene}: --{name} belongs to scenes of many particles; `pyjkr run` proves those of impacts.")
     from pyjkr import tables
 
     _, made = _load(options.scene)
@@ -125,6 +125,11 @@ def _plan(options: argparse.Namespace) -> None:
     print(tables.plan_text(made))
 
 
+def _refuse_max_error(options: argparse.Namespace) -> None:
+    if options.max_error_given:
+        raise SceneError(f"{options.scene}: a scene of impacts states its stiffness and steps itself; leave --max-error to `pyjkr plan`.")
+
+
 def _deck(options: argparse.Namespace) -> None:
     path = _many(options.scene)
     if path:
@@ -136,6 +141,7 @@ def _deck(options: argparse.Namespace) -> None:
         return
     from pyjkr import deck
 
+    _refuse_max_error(options)
     _, made = _load(options.scene)
     if options.explain:
         raise SceneError(f"{options.scene}: `pyjkr plan {options.scene} --explain` explains scenes of impacts.")
@@ -161,6 +167,7 @@ def _run(options: argparse.Namespace) -> None:
     from pyjkr import campaign, progress, report
     from pyjkr.compare import compare, oracle_outcomes
 
+    _refuse_max_error(options)
     path, made = _load(options.scene)
     directory = options.output or Path("results") / (path.parent.name if path.name == SCENE_COPY else path.stem)
     simulator = _simulator(options.engine, options.dry_run)

@@ -39,4 +39,4 @@ def shipped_sweeps() -> dict[str, Path]:
 def scene_file(name: str) -> Path:
     """A scene given as a path, or as the name of a shipped case. Paths that do not exist come back as they are."""
     path = Path(name)
-    return path if path.exists() else shipped_cases().get(name, path)
+    return path if path.is_file() else shipped_cases().get(name, path)

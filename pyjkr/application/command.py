@@ -11,14 +11,17 @@ import math
 import os
 import shutil
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from pyjkr import plot
-from pyjkr.application import analysis, deck, picture, scene, situation
+from pyjkr.application import analysis, deck, picture, places, scene, situation
 from pyjkr.application.scene import Application
 from pyjkr.errors import RunError, SceneError, ToleranceError
-from pyjkr.planning import cost_model, estimate, table, variants
+from pyjkr.planning import collisions, cost_model, estimate, table, variants
 from pyjkr.planning.estimate import Estimate
 from pyjkr.planning.plan import ApplicationPlan, plan
 from pyjkr.progress import of_steps
@@ -66,20 +69,36 @@ def prepare(path: Path, max_error: float, *, with_simulator: bool = False) -> Re
     """
     read = scene.load(path)
     try:
-        made = plan(situation.situation(read), max_error)
-    except (OverflowError, ZeroDivisionError) as error:
-        raise SceneError(f"{path}: its numbers lead beyond what can be computed ({error}). Look for a slip in an exponent.") from None
-    try:
         simulator = find_simulator()
     except RunError:
         if with_simulator:
             raise
         simulator = None
-    for warning in made.warnings:
+    try:
+        # Absurd numbers end in one line, not in warnings of numpy before it.
+        with np.errstate(all="ignore"):
+            made = plan(situation.situation(read), max_error)
+            variant = variants.planned(made)
+            cost = estimate.estimate(made, cost_model.load(simulator), around=deck.around(read, variant))
+            deck.steps(read, variant)
+    except (OverflowError, ZeroDivisionError, ValueError) as error:
+        raise SceneError(f"{path}: its numbers lead beyond what can be computed ({error}). Look for a slip in an exponent.") from None
+    for warning in (*made.warnings, *_too_short(read, made, variant)):
         print(f"pyjkr: warning: {warning}", file=sys.stderr)
-    variant = variants.planned(made)
-    cost = estimate.estimate(made, cost_model.load(simulator), around=deck.around(read, variant))
     return Ready(read, made, variant, cost, simulator)
+
+
+def _too_short(read: Application, made: ApplicationPlan, variant: variants.Variant) -> Iterator[str]:
+    """Whether an impact of two bodies may not be over at the end: a softened one lasts longer than a real one."""
+    if read.start not in ("pair", "single"):
+        return
+    meeting = made.situation.meetings[0]
+    needed = places.GAP * read.radii[1] / meeting.speed + 2 * collisions.contact_time(variant.pair(meeting), meeting.speed)
+    if read.run.duration < needed:
+        yield (
+            f"{read.source}: duration = {read.run.duration:g} s: flight and softened impact take {needed:.3g} s, so that the run may end"
+            " in contact. Make it longer."
+        )
 
 
 def run_plan(path: Path, options: argparse.Namespace) -> None:
@@ -95,6 +114,7 @@ def run_plan(path: Path, options: argparse.Namespace) -> None:
     print(table.explain(ready.plan) if options.explain else table.text(ready.plan))
     print()
     print(cost_text(ready))
+    (directory / VERIFICATION_NAME).unlink(missing_ok=True)
     written = write(ready, directory)
     print(f"pyjkr: wrote {written}", file=sys.stderr)
     if options.verify:
@@ -109,6 +129,9 @@ def run_deck(path: Path, options: argparse.Namespace) -> None:
     if options.output:
         print(write(ready, options.output))
     else:
+        others = [name for name, _ in deck.files(ready.scene, ready.variant) if name != deck.DECK_NAME]
+        if others:
+            print(f"pyjkr: warning: the deck reads {' and '.join(others)}; -o DIR writes both", file=sys.stderr)
         print(deck.render(ready.scene, ready.variant, comments=ready.comments), end="")
 
 
@@ -119,7 +142,8 @@ def run_run(path: Path, options: argparse.Namespace) -> None:
     ready = prepare(path, options.max_error, with_simulator=not options.dry_run)
     directory = options.output or Path("results") / name_of(path)
     if options.dry_run:
-        print(f"# cd '{directory}' && liggghts-jkr -in {deck.DECK_NAME}")
+        launch = f"mpirun -np {options.np} " if options.np > 1 else ""
+        print(f"# pyjkr deck {path} -o '{directory}' && cd '{directory}' && {launch}liggghts-jkr -in {deck.DECK_NAME}")
         print(deck.render(ready.scene, ready.variant, comments=ready.comments))
         return
     directory.mkdir(parents=True, exist_ok=True)

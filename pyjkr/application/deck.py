@@ -18,6 +18,7 @@ from pyjkr.application import laws, places, shapes, situation
 from pyjkr.application.laws import Law
 from pyjkr.application.places import Spheres
 from pyjkr.application.scene import Application
+from pyjkr.errors import PlanError
 from pyjkr.planning import estimate, neighbours
 from pyjkr.planning.cost_model import SHIPPED
 from pyjkr.planning.estimate import Around
@@ -33,6 +34,8 @@ INLINE = 2
 # Joins the lines of one command.
 CONTINUED = " &\n" + 17 * " "
 ROUND_OFF = 1e-12
+# Steps are 32-bit numbers in LIGGGHTS.
+MOST_STEPS = 2**31 - 1
 # Facets around a tube, 5 degrees each.
 FACETS = 72
 # Digits of the numbers in a deck: more would show round-off, 0.30000000000000004; places and velocities in the data file have all.
@@ -140,7 +143,10 @@ def steps(scene: Application, variant: Variant, duration: float | None = None) -
     # A duration that is a whole number of steps is not made longer by round-off.
     needed = max(1, math.ceil((duration or scene.run.duration) / variant.time_step * (1 - ROUND_OFF)))
     interval = math.ceil(needed / scene.run.frames)
-    return math.ceil(needed / interval) * interval, interval
+    total = math.ceil(needed / interval) * interval
+    if total > MOST_STEPS:
+        raise PlanError(f"{scene.source}: {total} steps of {variant.time_step:.3g} s; LIGGGHTS takes {MOST_STEPS}. Shorten run.duration.")
+    return total, interval
 
 
 def neighbour_lists(scene: Application, variant: Variant, start: Spheres | None = None) -> Neighbours:
@@ -156,6 +162,12 @@ def neighbour_lists(scene: Application, variant: Variant, start: Spheres | None 
     start = start or places.spheres(scene, laws.law(scene, variant))
     around = estimate.surroundings(situation.situation(scene), variant, math.prod(high - low for low, high in places.box(scene, start)))
     if scene.numerics.skin:
+        needed = max(neighbours.SKIN_IN_NECKS * around.neck, 2 * around.speed * around.time_step)
+        if scene.numerics.skin < needed:
+            raise PlanError(
+                f"{scene.source}: numerics: skin = {scene.numerics.skin:g} m is too short: necks and the motion of a step ask for"
+                f" {needed:.3g} m. Leave it out and the deck chooses one."
+            )
         return neighbours.at(scene.numerics.skin, around, SHIPPED, "as the scene says")
     return neighbours.choose(around, SHIPPED)
 

@@ -248,6 +248,8 @@ class Application(_Table):
         wanted = {frozenset(pair) for pair in itertools.combinations_with_replacement(spheres, 2)}
         if self.start == "single":
             wanted = set()
+        if self.start == "pair":
+            wanted = {frozenset(spheres)}
         wanted |= {frozenset((name, self.wall.material)) for name in spheres} if self.wall else set()
         given = [frozenset(contact.between) for contact in self.contact]
         for index, pair in enumerate(given):
@@ -309,7 +311,7 @@ def is_application(path: str | Path) -> bool:
 
 def _content(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}. Name a scene file or a shipped case.") from error
     except UnicodeDecodeError as error:

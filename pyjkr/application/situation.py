@@ -44,6 +44,7 @@ def situation(scene: Application) -> Situation:
         many_contacts=scene.start not in ("pair", "single"),
         lasting=_lasting(scene, start),
         pulling_force=_drag(scene, float(start.radii.max())),
+        gas_speed=_gas_speed(scene),
         gravity=scene.motion.gravity,
         falling_length=fall,
         weight_carried=_column_weight(scene, start) if scene.start == "rain" else float(weights.max()),
@@ -71,6 +72,7 @@ def _meeting(scene: Application, start: places.Spheres, first: Body, second: Bod
         friction_coefficient=contact.friction_coefficient or 0.0,
         critical_rolling=critical_rolling(scene, first, second, pair),
         poissons_ratio=max(scene.material[name].poissons_ratio for name in contact.between),
+        drag_time=min((_drag_time(scene, body) for body in bodies), default=math.inf),
     )
 
 
@@ -93,6 +95,7 @@ def critical_rolling(scene: Application, first: Body, second: Body, pair: PairPr
 def _speeds(scene: Application, start: places.Spheres, *, wall: bool) -> tuple[float, float, float]:
     """Fastest and slowest normal approach whose outcome matters, and largest tangential speed [m/s]."""
     speed, angle = scene.motion.speed, math.radians(scene.motion.angle)
+    blown = _gas_speed(scene)
     if scene.start == "pair":
         return speed, speed, 0.0
     if scene.start in ("single", "agglomerate"):
@@ -102,15 +105,16 @@ def _speeds(scene: Application, start: places.Spheres, *, wall: bool) -> tuple[f
     if scene.start == "cloud":
         velocities = start.velocities
         fastest = max(float(np.linalg.norm(velocities - each, axis=1).max()) for each in velocities)
+        # A gas takes unlike spheres along at different rates.
+        fastest += blown if len(set(start.masses.tolist())) > 1 else 0.0
         # Root mean square of one component of the velocity of two relative to each other.
         return fastest, math.sqrt(2) * scene.motion.spread, fastest
     if scene.start == "rain":
         gravity, height = scene.motion.gravity, scene.domain.size[2]
-        fastest = math.sqrt(speed**2 + 2 * gravity * height)
+        fastest = math.hypot(math.sqrt(speed**2 + 2 * gravity * height), blown)
         # A sphere that comes to rest last falls about its diameter, into the next pocket.
         slowest = math.sqrt(4 * gravity * float(start.radii.min())) or speed
         return fastest, min(slowest, fastest), fastest
-    blown = float(np.linalg.norm(scene.gas.velocity)) if scene.gas else 0.0
     fallen = math.sqrt(speed**2 + 2 * scene.motion.gravity * _falling_length(scene, start))
     fastest = math.hypot(fallen, blown)
     # Spheres of a stream follow each other; they meet where one has been stopped.
@@ -131,12 +135,21 @@ def _falling_length(scene: Application, start: places.Spheres) -> float:
 def _column_weight(scene: Application, start: places.Spheres) -> float:
     """Weight of the column as wide as the largest sphere, out of the weight per area of the whole bed [N]."""
     pressure = float(start.masses.sum()) * scene.motion.gravity / (scene.domain.size[0] * scene.domain.size[1])
-    return pressure * (2 * float(start.radii.max())) ** 2
+    return max(pressure * (2 * float(start.radii.max())) ** 2, float(start.masses.max()) * scene.motion.gravity)
 
 
 def _drag(scene: Application, radius: float) -> float:
     """Stokes' drag on a sphere at rest [N]."""
-    return 6 * math.pi * scene.gas.viscosity * radius * float(np.linalg.norm(scene.gas.velocity)) if scene.gas else 0.0
+    return 6 * math.pi * scene.gas.viscosity * radius * _gas_speed(scene) if scene.gas else 0.0
+
+
+def _drag_time(scene: Application, body: Body) -> float:
+    """m/(6 pi viscosity r) [s]: Stokes' drag stops a sphere in it."""
+    return laws.mass(scene, body) / (6 * math.pi * scene.gas.viscosity * body.radius) if scene.gas else math.inf
+
+
+def _gas_speed(scene: Application) -> float:
+    return float(np.linalg.norm(scene.gas.velocity)) if scene.gas else 0.0
 
 
 def _lasting(scene: Application, start: places.Spheres) -> bool:

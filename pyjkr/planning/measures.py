@@ -71,9 +71,14 @@ def adhesion_in_impacts(situation: Situation) -> Measure:
 
 
 def adhesion_that_lasts(situation: Situation) -> Measure:
-    acting = load(situation)
-    found = _worst(situation, lambda meeting: _over(meeting.pair.pull_off_force, acting)) if lasts(situation) else (0.0, "")
-    return _measured(found, "pull-off force / load that lasts", "F_C/F, F = max(weight/2, pull)", "Haervig 2017, eq. 8 (F_C)")
+    def share(meeting: Meeting) -> float:
+        # What lies free is held by its own weight alone, however much rests on others.
+        own = min(collisions.masses(meeting)) * situation.gravity
+        acting = max(min(load(situation), own) if own > 0 else load(situation), situation.pulling_force)
+        return _over(meeting.pair.pull_off_force, acting)
+
+    found = _worst(situation, share) if lasts(situation) else (0.0, "")
+    return _measured(found, "pull-off force / weight or pull", "F_C/F, F = max(m g of the lighter, pull)", "Haervig 2017, eq. 8 (F_C)")
 
 
 def neck_in_impacts(situation: Situation) -> Measure:

@@ -69,7 +69,7 @@ def _oblique_parts(meeting: Meeting, decisions: tuple[Decision, ...], q: float) 
             parts["real sliding limit"] = kept - collisions.sliding_adhesion_change(meeting, real)
     if sticks:
         # It rolls on for a time that does not scale: a smaller moment stops it later.
-        moment = scaling.force_factor(q) * limit / meeting.critical_rolling if math.isfinite(meeting.critical_rolling) else 1.0
+        moment = scaling.force_factor(q) * (1.0 if originals else scaling.contact_radius_factor(q))
         if on(decisions, "rolling"):
             known = _settling(meeting, soft) * FEWEST_PERIODS <= 1
             change = _settling(meeting, soft) ** 2 - _settling(meeting, real) ** 2

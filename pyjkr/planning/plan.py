@@ -199,6 +199,7 @@ def _warnings(situation: Situation, decisions: tuple[Decision, ...], binding: Li
             if binding.name.startswith("pull-off")
             else f"{situation.source}: {binding.name} allows no softening: {binding.estimate}."
         )
-    total = sum(value for cause, value in budget.items() if math.isfinite(value))
+    wished = {f"without {made.effect}" for made in decisions if made.forced}
+    total = sum(value for cause, value in budget.items() if math.isfinite(value) and cause not in wished)
     if total > max_error:
         yield f"{situation.source}: the estimated errors add up to {total:.2g}, max_error is {max_error:g}. Lower max_error, or check."

@@ -46,6 +46,8 @@ class Meeting:
         xi_crit of the real material [m]; infinite where it is not given.
     poissons_ratio : float
         Larger of the two.
+    drag_time : float
+        m/(6 pi viscosity r) of the sphere that a gas stops soonest [s]; infinite without gas.
     """
 
     label: str
@@ -58,6 +60,7 @@ class Meeting:
     friction_coefficient: float = 0.0
     critical_rolling: float = float("inf")
     poissons_ratio: float = 0.3
+    drag_time: float = float("inf")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,6 +81,8 @@ class Situation:
         Whether contacts stay: beds, agglomerates, spheres that stick.
     pulling_force : float
         Strongest force that the surroundings may exert on a contact [N]: drag, weight, shaking.
+    gas_speed : float
+        Of the gas, where there is one [m/s].
     gravity : float
         Acceleration that the scene states [m/s2]; 0 for none.
     falling_length : float
@@ -103,6 +108,7 @@ class Situation:
     many_contacts: bool
     lasting: bool
     pulling_force: float = 0.0
+    gas_speed: float = 0.0
     gravity: float = 0.0
     falling_length: float = 0.0
     weight_carried: float = 0.0

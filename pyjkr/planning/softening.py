@@ -156,9 +156,12 @@ def _force_in_impacts(situation: Situation, decisions: tuple[Decision, ...], all
     adhesion = on(decisions, "adhesion")
     law = "jkr" if on(decisions, "neck") else "jkr/simplified"
 
-    def force(meeting: Meeting) -> float:
-        weight = max(collisions.masses(meeting)) * situation.gravity if on(decisions, "gravity") else 0.0
-        return weight + situation.pulling_force
+    def acceleration(meeting: Meeting, speed: float) -> float:
+        """Of the two bodies relative to each other; a gas drags at both, whatever else pulls is taken at the lighter one."""
+        weight = situation.gravity if on(decisions, "gravity") else 0.0
+        if math.isfinite(meeting.drag_time):
+            return weight + len(meeting.radii) * (situation.gas_speed + speed) / meeting.drag_time
+        return weight + situation.pulling_force / meeting.pair.effective_mass
 
     def change(meeting: Meeting) -> float:
         """Speed that the force gives during a contact over that of the impact, per 1/q^(2/5) - 1."""
@@ -167,13 +170,13 @@ def _force_in_impacts(situation: Situation, decisions: tuple[Decision, ...], all
         if sticks >= meeting.speed:
             return 0.0
         speed = max(meeting.slowest_speed, sticks)
-        return force(meeting) * collisions.contact_time(pair, speed) / (pair.effective_mass * speed)
+        return acceleration(meeting, speed) * collisions.contact_time(pair, speed) / speed
 
     worst = max(change(meeting) for meeting in situation.meetings)
     return Limit(
         name="outer force during an impact", smallest_ratio=(worst / (worst + allowed)) ** 2.5 if worst > 0 else 0.0,
         estimate=f"changes speeds by {allowed:g} of the impact's" if worst > 0 else "no outer force, or every impact sticks",
-        formula="F (t_c(q) - t_c(1))/(m v), t_c ~ q^(-2/5)", source="Chen 2019, eq. 18; momentum",
+        formula="(g + F/m + (U + v)/t_drag) (t_c(q) - t_c(1))/v, t_c ~ q^(-2/5)", source="Chen 2019, eq. 18; momentum",
     )  # fmt: skip
 
 

@@ -45,6 +45,8 @@ FEWEST_STEPS = 20
 CHAIN, NEIGHBOUR_SHARE = 2.0, 1 / 2
 # Skin of the neighbour lists in radii of the smallest sphere, and the part of it that may be flown in a step.
 SKIN_IN_RADII, FLIGHT_SHARE = 0.2, 0.5
+# Of the time in which a gas stops a sphere: half of it is where LIGGGHTS' explicit drag begins to oscillate.
+DRAG_SHARE = 0.1
 # LIGGGHTS takes a Young's modulus [Pa] from here on without `soft_particles`.
 SOFTEST_MODULUS = 5e6
 
@@ -217,9 +219,12 @@ def _information(meeting: Meeting, pair: PairProperties) -> list[Mode]:
     found = [
         Mode(name="flight", where=meeting.label, period=crossing, limit=FLIGHT_SHARE * crossing, binds=True,
              formula=f"{FLIGHT_SHARE:g} {SKIN_IN_RADII:g} r/v", source="skin of the neighbour lists"),
+        Mode(name="drag", where=meeting.label, period=meeting.drag_time, limit=DRAG_SHARE * meeting.drag_time,
+             binds=math.isfinite(meeting.drag_time), formula=f"{DRAG_SHARE:g} m/(6 pi viscosity r)", source="Stokes; taken explicitly"),
         Mode(name="Rayleigh", where=meeting.label, period=rayleigh, limit=rayleigh, binds=False,
              formula="pi r sqrt(rho/G)/(0.1631 nu + 0.8766)", source="LIGGGHTS, fix check/timestep/gran; for comparison"),
     ]  # fmt: skip
+    found = [mode for mode in found if math.isfinite(mode.period)]
     if pair.surface_energy > 0:
         time = collisions.equilibrium_overlap(pair) / meeting.speed
         found.append(

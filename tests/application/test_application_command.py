@@ -7,7 +7,9 @@ import json
 import pytest
 from application_scenes import CASES, changed
 
+from pyjkr.application import scene, situation
 from pyjkr.cli import main
+from pyjkr.planning import plan
 
 
 def run(*arguments: object) -> int:
@@ -115,6 +117,69 @@ def test_slips_of_the_finger_end_in_one_line_and_status_2(capsys, tmp_path, monk
     assert run(*arguments) == 2
     assert told in capsys.readouterr().err.splitlines()[-1]
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "told"),
+    [
+        ("head_on_pair", [("duration = 1e-5 ", "duration = 1e3 ")], "LIGGGHTS takes 2147483647"),
+        ("head_on_pair", [("duration = 1e-5 ", "duration = 1e300 ")], "beyond what can be computed"),
+        ("dust_coagulation", [("[numerics]", "[numerics]\nskin = 1e-12")], "too short"),
+        ("oblique_wall", [("[[particles]]", "[particles]")], "particles"),
+    ],
+)
+def test_numbers_that_cannot_be_run_are_refused_in_one_line(tmp_path, capsys, name, changes, told):
+    assert run("plan", changed(tmp_path, name, *changes), "-o", tmp_path / "out") == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert len(error.splitlines()) == 1 or name == "dust_coagulation"
+
+
+def test_free_rolling_is_no_slip_of_an_exponent(tmp_path):
+    free = [("critical_rolling_angle = 0.0084", "critical_rolling_angle = 0.0")]
+    assert run("plan", changed(tmp_path, "oblique_wall", *free), "-o", tmp_path / "out") == 0
+
+
+def test_a_run_that_may_end_in_contact_is_warned_about(tmp_path, capsys):
+    short = changed(tmp_path, "head_on_pair", ("duration = 1e-5 ", "duration = 5e-7 "))
+    assert run("plan", short, "-o", tmp_path / "out") == 0
+    assert "may end in contact" in capsys.readouterr().err
+
+
+def test_drag_of_a_gas_bounds_the_softening_and_the_time_step(tmp_path):
+    """In water the softened impact would be braked to a halt; a fast response is followed."""
+    plans = {}
+    for viscosity in ("1e-5", "1e-3"):
+        path = changed(tmp_path, "head_on_pair", ("[run]", f"[gas]\nviscosity = {viscosity}\n[run]"))
+        plans[viscosity] = plan.plan(situation.situation(scene.load(path)), 0.05)
+    assert plans["1e-3"].modulus_ratio > 10 * plans["1e-5"].modulus_ratio
+    assert plans["1e-3"].binding.name == "outer force during an impact"
+    for viscosity, made in plans.items():
+        response = 1050 * 2 * 2.5e-6**2 / (9 * float(viscosity))
+        assert made.time_step <= 0.1 * response
+
+
+def test_a_bed_of_less_than_a_layer_carries_whole_spheres(tmp_path):
+    few = changed(tmp_path, "packed_bed", ("number = 300", "number = 5"))
+    assert not plan.plan(situation.situation(scene.load(few)), 0.05).on("adhesion")
+
+
+def test_a_directory_of_the_name_of_a_case_does_not_hide_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "packed_bed").mkdir()
+    assert run("plan", "packed_bed", "-o", "out") == 0
+
+
+def test_two_spheres_of_two_materials_need_one_contact(tmp_path):
+    text = CASES["head_on_pair"].read_text(encoding="utf-8")
+    text = text.replace('between = ["polystyrene", "polystyrene"]', 'between = ["polystyrene", "glass"]')
+    text = text.replace("number = 2\n", 'number = 1\n').replace('start = "pair"', 'start = "pair"', 1)
+    first = text[text.index("[[particles]]") : text.index("[motion]")]
+    second = first.replace('"spheres"', '"other"').replace('material = "polystyrene"', 'material = "glass"')
+    glass = "[material.glass]\ndensity = 2500.0\nyoungs_modulus = 70e9\npoissons_ratio = 0.22\n"
+    path = tmp_path / "two.toml"
+    path.write_text(text.replace(first, glass + first + second), encoding="utf-8-sig")
+    assert run("deck", path, "-o", tmp_path / "out") == 0
 
 
 def test_all_cases_are_listed_by_the_help(capsys):
