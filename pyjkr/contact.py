@@ -117,15 +117,27 @@ def maximum_contact_radius(pair: PairProperties, speed: float) -> float:
     zero_load = pair.equilibrium_contact_radius
     if zero_load == 0:
         return hertz
-    unit = pair.pull_off_force * zero_load**2 / radius
-
-    def work(s: float) -> float:
-        return 4 * (0.4 * s**5 - 2 / 3 * s**3.5 + s**2 / 6)
-
-    wanted = kinetic_energy / unit + work(CONTACT_RADIUS_AT_ZERO_OVERLAP)
+    wanted = kinetic_energy / _unit_of_work(pair) + _work(CONTACT_RADIUS_AT_ZERO_OVERLAP)
     # Beyond s = 1 the force repels and the work grows without bound: one root, bracketed by the Hertz radius.
     upper = 2 + 2 * hertz / zero_load
-    return zero_load * brentq(lambda s: work(s) - wanted, 1.0, upper, xtol=1e-14, rtol=1e-13)
+    return zero_load * brentq(lambda s: _work(s) - wanted, 1.0, upper, xtol=1e-14, rtol=1e-13)
+
+
+def break_energy(pair: PairProperties) -> float:
+    """Energy that a contact takes from making to breaking [J]: work of the full law from zero overlap into the neck's end.
+
+    0.2574 F_C a_0^2/R: primitive of Haervig 2017, eqs 8-10, up to the rupture of Chen 2019, eq. 6.
+    """
+    return _unit_of_work(pair) * (_work(ROOT_AT_RUPTURE**2) - _work(CONTACT_RADIUS_AT_ZERO_OVERLAP))
+
+
+def _unit_of_work(pair: PairProperties) -> float:
+    return pair.pull_off_force * pair.equilibrium_contact_radius**2 / pair.effective_radius
+
+
+def _work(s: float) -> float:
+    """Work of the force up to a contact radius s a_0, in F_C a_0^2/R."""
+    return 4 * (0.4 * s**5 - 2 / 3 * s**3.5 + s**2 / 6)
 
 
 def overlap(pair: PairProperties, contact_radius: float) -> float:

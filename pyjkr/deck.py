@@ -10,9 +10,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-import jinja2
-
-from pyjkr import resources
+from pyjkr import templating
 from pyjkr.case import Case
 from pyjkr.scene import Scene
 
@@ -58,16 +56,8 @@ def render_template(name: str, case: Case, scene: Scene, *, box: tuple[float, ..
         What the template asks for besides.
     """
     names = list(dict.fromkeys((scene.impact.material, scene.impact.struck_material)))
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(resources.directory("templates")),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        finalize=_number,
-    )
-    environment.filters["plain"] = _plain
-    environment.filters["pairs"] = lambda value: " ".join([str(len(names)), *[_number(value)] * len(names) ** 2])
+    environment = templating.environment()
+    environment.filters["pairs"] = lambda value: " ".join([str(len(names)), *[templating.exact(value)] * len(names) ** 2])
     return environment.get_template(name).render(
         scene=scene,
         case=case,
@@ -125,16 +115,6 @@ def contact_keywords(scene: Scene) -> str:
 
 def _switch(value: bool) -> str:
     return "on" if value else "off"
-
-
-def _number(value: object) -> object:
-    """Numbers as text that reads back as the same double."""
-    return repr(value + 0.0) if isinstance(value, float) else value
-
-
-def _plain(text: str) -> str:
-    """A name fit for a LIGGGHTS comment: one line, without the sign `&` that would continue it on the next."""
-    return "".join(letter if letter.isprintable() else "?" for letter in text).replace("&", "+")
 
 
 def plate_half_width(case: Case, span: float = 0.0) -> float:

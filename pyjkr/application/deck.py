@@ -11,9 +11,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-import jinja2
-
-from pyjkr import resources
+from pyjkr import templating
 from pyjkr.application import laws, places, shapes, situation
 from pyjkr.application.laws import Law
 from pyjkr.application.places import Spheres
@@ -201,15 +199,8 @@ def data_file(scene: Application, start: Spheres) -> str:
 
 def _text(scene: Application, law: Law, start: Spheres, comments: Sequence[str], duration: float | None) -> str:
     variant = law.variant
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(resources.directory("templates")),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        finalize=_number,
-    )
-    environment.filters |= {"plain": _plain, "numbers": _numbers}
+    environment = templating.environment(_number)
+    environment.filters["numbers"] = _numbers
     materials, bounds = scene.materials, places.box(scene, start)
     total, interval = steps(scene, variant, duration)
     lists = neighbour_lists(scene, variant, start)
@@ -319,6 +310,3 @@ def _numbers(values: Iterable[object], separator: str = " ") -> str:
     return separator.join(str(_number(value)) for value in values)
 
 
-def _plain(text: str) -> str:
-    """Text fit for a LIGGGHTS comment: one line, without the sign `&` that would continue it on the next."""
-    return "".join(letter if letter.isprintable() else "?" for letter in str(text)).replace("&", "+")

@@ -163,20 +163,7 @@ def _lasting(scene: Application, start: places.Spheres) -> bool:
     pair = laws.pair_properties(scene, *laws.extremes(scene)[0])
     _, slowest, _ = _speeds(scene, start, wall=scene.wall is not None)
     left = 0.5 * pair.effective_mass * slowest**2 * pair.restitution_coefficient**2
-    return left <= make_break_energy(pair)
-
-
-def make_break_energy(pair: PairProperties) -> float:
-    """Energy that a contact takes from making to breaking [J]: work of the full law from zero overlap into the neck's end.
-
-    Between zero overlap on the way in and rupture on the way out; primitive of Haervig 2017 eqs 8-10 in units F_C a_0^2/R.
-    """
-
-    def work(s: float) -> float:
-        return 4 * (0.4 * s**5 - 2 / 3 * s**3.5 + s**2 / 6)
-
-    unit = pair.pull_off_force * pair.equilibrium_contact_radius**2 / pair.effective_radius
-    return unit * (work(contact_laws.ROOT_AT_RUPTURE**2) - work(contact_laws.CONTACT_RADIUS_AT_ZERO_OVERLAP))
+    return left <= contact_laws.break_energy(pair)
 
 
 def _spheres_across(scene: Application, start: places.Spheres) -> float:

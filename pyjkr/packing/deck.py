@@ -10,10 +10,9 @@ import hashlib
 import math
 from pathlib import Path
 
-import jinja2
 import numpy as np
 
-from pyjkr import dump, resources
+from pyjkr import dump, templating
 from pyjkr.packing.column import column
 from pyjkr.packing.scene import PackingScene
 from pyjkr.run import Run, read_run, run_deck
@@ -47,14 +46,7 @@ def write(scene: PackingScene, directory: Path) -> Path:
     data = _data_file(scene, places)
     (directory / DATA_NAME).write_text(data, encoding="ascii")
     step = scene.time_step
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(resources.directory("templates")),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        finalize=lambda value: repr(value) if isinstance(value, float) else value,
-    )
+    environment = templating.environment()
     columns = sum(len(dump.PAIR_COLUMNS[keyword]) for keyword in CONTACT_KEYWORDS) + len(HISTORY)
     rain_steps = math.ceil(float(places[-1, 2]) / scene.speed / step)
     text = environment.get_template("packing.in.j2").render(

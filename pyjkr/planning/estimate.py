@@ -26,8 +26,6 @@ GROWN = 2 / 3
 # Part of the kinetic energy that breaks contacts of an agglomerate: 445 contacts became 150 at 85 times the energy that breaks them
 # all, 2 at 1e4 times; counted in two runs of agglomerate_break_up, at 3 m/s with 2.5 um and 1.5 m/s with 100 um.
 BREAKING = 0.02
-# Energy to break a contact in F_C a_0^2/R: from zero overlap on the way in to rupture; Haervig 2017, eqs 8-10, integrated.
-BREAK_ENERGY = 0.2574
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -197,7 +195,7 @@ def _over_breaking(meeting: Meeting) -> float:
     """Kinetic energy of a sphere over the energy that breaks one of its contacts."""
     pair = meeting.pair
     mass = max(4 / 3 * math.pi * density * radius**3 for density, radius in zip(meeting.densities, meeting.radii, strict=True))
-    breaking = BREAK_ENERGY * pair.pull_off_force * pair.equilibrium_contact_radius**2 / pair.effective_radius
+    breaking = contact.break_energy(pair)
     return 0.5 * mass * meeting.speed**2 / breaking
 
 

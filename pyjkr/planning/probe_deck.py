@@ -16,7 +16,7 @@ from pathlib import Path
 import jinja2
 import pandas as pd
 
-from pyjkr import dump, resources
+from pyjkr import dump, templating
 from pyjkr.errors import DumpError, PlanError
 from pyjkr.run import Run, read_run, run_deck
 from pyjkr.simulator import Simulator
@@ -241,15 +241,7 @@ def program_digest(simulator: Simulator) -> str:
 @functools.cache
 def _template() -> jinja2.Template:
     """Compiled once: a verification renders a hundred decks."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(resources.directory("templates")),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        finalize=lambda value: repr(float(value)) if isinstance(value, float) else value,
-    )
-    environment.filters["plain"] = lambda text: "".join(c if c.isprintable() else "?" for c in text).replace("&", "+")
+    environment = templating.environment()
     return environment.get_template(TEMPLATE)
 
 

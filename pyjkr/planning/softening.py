@@ -29,6 +29,8 @@ DIRECTIONS = 3
 # rolling loses while fragments rearrange, and the square of the energy of a radius of sliding over that of the impact; and per
 # strain of the whole body by deeper overlaps. From ensembles of runs, docs/break-up.md.
 LOST_RESISTANCE, MOST_LOST, BODY_STRAIN = 0.012, 0.15, 0.03
+# Just above a jump of an estimate.
+ROUND_OFF = 1e-6
 # Lowest ratio looked for.
 LOWEST = 1e-12
 
@@ -97,7 +99,10 @@ def _oblique_impacts(situation: Situation, decisions: tuple[Decision, ...], allo
 
     smallest = _smallest(excess)
     at = max(smallest, LOWEST)
-    parts = ", ".join(f"{cause} {value:.2g}" for cause, value in oblique.change(situation, decisions, at).items() if value > 0)
+    found = oblique.change(situation, decisions, at * (1 + ROUND_OFF))
+    parts = ", ".join(f"{cause} {value:.2g}" for cause, value in found.items() if value > 0)
+    if smallest > 0 and sum(found.values()) < 0.9 * allowed:
+        parts += f"; softer it would stop within {oblique.FEWEST_PERIODS} periods, too few for an estimate"
     if not situation.about_single_impacts:
         text = f"single rebounds are not the result: within {allowed:g} of v they would need {smallest:.2g}"
         return Limit(name=name, smallest_ratio=0.0, estimate=text, formula=formula, source=source)

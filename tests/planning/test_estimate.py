@@ -11,11 +11,11 @@ import pytest
 from planning_situations import PAIR, SINGLE, bed, meeting, situation
 
 from pyjkr.application import deck, places, scene
-from pyjkr.application.situation import make_break_energy
 from pyjkr.application.situation import situation as of_scene
+from pyjkr.contact import break_energy
 from pyjkr.planning import estimate, neighbours, variants
 from pyjkr.planning.cost_model import SHIPPED
-from pyjkr.planning.estimate import BREAK_ENERGY, BREAKING, DENSEST, GROWN, LOOSEST, Around
+from pyjkr.planning.estimate import BREAKING, DENSEST, GROWN, LOOSEST, Around
 from pyjkr.planning.plan import plan
 from pyjkr.resources import directory
 
@@ -129,7 +129,7 @@ def test_an_impact_that_breaks_all_contacts_many_times_leaves_hardly_any_and_a_s
 
     pair = meeting(PAIR).pair
     # Kinetic energy of one sphere (twice the effective mass) that could break 1/BREAKING times its share of contacts, 4/2.
-    half = math.sqrt(2 * make_break_energy(pair) * 2 / BREAKING / (2 * pair.effective_mass))
+    half = math.sqrt(2 * break_energy(pair) * 2 / BREAKING / (2 * pair.effective_mass))
     assert left(half) == pytest.approx(0.5, rel=1e-3)
     assert left(1e-3 * half) == pytest.approx(1.0, rel=1e-5)
     assert left(100 * half) < 2e-4
@@ -138,7 +138,7 @@ def test_an_impact_that_breaks_all_contacts_many_times_leaves_hardly_any_and_a_s
 def test_break_energy_is_the_work_of_the_law():
     pair = meeting(PAIR).pair
     unit = pair.pull_off_force * pair.equilibrium_contact_radius**2 / pair.effective_radius
-    assert pytest.approx(make_break_energy(pair) / unit, abs=5e-5) == BREAK_ENERGY
+    assert pytest.approx(break_energy(pair) / unit, abs=5e-5) == 0.2574
 
 
 @pytest.mark.parametrize("name", ["head_on_pair", "oblique_wall", "ash_on_tube", "agglomerate_break_up", "dust_coagulation", "packed_bed"])
