@@ -6,6 +6,7 @@ lies nearest to the centre. Lengths in radii, spheres just touch: whoever uses i
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 
@@ -18,6 +19,8 @@ TOUCHING = 1e-9
 ROUGHNESS = 0.05
 
 
+# A plan asks for the places several times.
+@functools.lru_cache(maxsize=4)
 def agglomerate(number: int, seed: int) -> np.ndarray:
     """Centres of touching spheres of radius 1, about their centre of mass, in a random orientation.
 
@@ -45,7 +48,9 @@ def agglomerate(number: int, seed: int) -> np.ndarray:
         ranks = np.concatenate([ranks[free], np.linalg.norm(new, axis=1) * (1 + ROUGHNESS * random.random(len(new)))])
     # Four normal numbers are a quaternion of any direction alike: a random orientation.
     turned = Rotation.from_quat(random.normal(size=4))
-    return turned.apply(centres - centres.mean(axis=0))
+    places = turned.apply(centres - centres.mean(axis=0))
+    places.flags.writeable = False
+    return places
 
 
 def _apart(points: np.ndarray, centre: np.ndarray) -> np.ndarray:
