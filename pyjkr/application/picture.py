@@ -208,7 +208,8 @@ def _what(scene: Application, first: Frame, frame: Frame, window: Window) -> str
     if scene.start in ("pair", "single"):
         return f"dashed: start; filled: {when}"
     if scene.start == "agglomerate":
-        return when if frame is first else f"{when}; coloured: the four largest fragments" + (f"\n{seen}" if seen else "")
+        what = "coloured: the four largest fragments" if len(frame.pairs) else "no two spheres touch"
+        return when if frame is first else f"{when}; {what}" + (f"\n{seen}" if seen else "")
     if scene.start == "cloud":
         return f"{when}; coloured: the four largest clusters;\ndotted: the periodic block"
     return f"{when}{'; coloured: held by the tube' if scene.start == 'stream' else ''}{f'; {seen}' if seen else ''}"
@@ -244,7 +245,8 @@ def _result(scene: Application, values: dict[str, float]) -> str:
         stuck = "stuck together" if scene.start == "pair" else f"stuck after {_length(values['distance_along_wall'])} along the wall"
         return f"result: {stuck}" if values["stuck"] else rf"result: rebound, $e_{{\rm eff}}$ = {values['e_eff']:.3f}"
     if scene.start == "agglomerate":
-        return f"result: {values['fragments']:.0f} fragments, the largest of {values['largest_fragment_share'] * scene.number:.0f} spheres"
+        largest = round(values["largest_fragment_share"] * scene.number)
+        return f"result: {values['fragments']:.0f} fragments, " + (f"the largest of {largest} spheres" if largest > 1 else "all single spheres")
     if scene.start == "cloud":
         return f"result: {values['mean_cluster_size']:.3g} spheres per cluster, {values['largest_cluster_size']:.0f} in the largest"
     if scene.start == "rain":
