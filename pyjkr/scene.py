@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
@@ -285,6 +285,9 @@ class Scene(_Table):
         return self
 
 
+_Scene = TypeVar("_Scene", bound=_Table)
+
+
 def load(path: str | Path) -> Scene:
     """Read and validate a scene file.
 
@@ -303,21 +306,30 @@ def load(path: str | Path) -> Scene:
     SceneError
         One line: file, table, key, rule, remedy.
     """
-    path = Path(path)
+    return validated(Scene, Path(path))
+
+
+def validated(model: type[_Scene], path: Path) -> _Scene:
+    """A scene file as `model`; raises as `load`."""
+    content = read(path)
+    if "source" in content:
+        raise SceneError(f"{path}: unknown key 'source'. Remove it.")
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        return model.model_validate(_tuples(content | {"source": path.name}))
+    except ValidationError as error:
+        raise SceneError(f"{path}: {explain(error, content, model)}") from error
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Tables of a TOML file, a byte order mark at its start left aside; raises as `load`."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}. Name a scene file or a shipped case.") from error
     except UnicodeDecodeError as error:
         raise SceneError(f"{path}: is not a text file in UTF-8. TOML needs that encoding.") from error
     except tomllib.TOMLDecodeError as error:
         raise SceneError(f"{path}: is not valid TOML: {error}") from error
-    if "source" in content:
-        raise SceneError(f"{path}: unknown key 'source'. Remove it.")
-    try:
-        return Scene.model_validate(_tuples(content | {"source": path.name}))
-    except ValidationError as error:
-        raise SceneError(f"{path}: {explain(error, content, Scene)}") from error
 
 
 def _tuples(value: Any) -> Any:

@@ -241,3 +241,9 @@ def test_the_name_of_the_file_cannot_be_set_from_inside(tmp_path):
 def test_no_negative_surface_energy_passes(tmp_path_factory, value):
     text = edited(DAHNEKE, ("surface_energy = 0.11", f"surface_energy = {value!r}"))
     assert "must be >= 0" in complaint(tmp_path_factory.mktemp("scene"), text)
+
+
+def test_a_byte_order_mark_at_the_start_of_a_file_is_no_fault(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(DAHNEKE, encoding="utf-8-sig")
+    assert load(path).title

@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import itertools
 import math
-import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from pyjkr.errors import SceneError
 from pyjkr.planning.situation import About, Wish
-from pyjkr.scene import Contact, Material, _fault, _quantity, _refuse_repeats, _Table, _tuples
-from pyjkr.scene_errors import explain
+from pyjkr.scene import Contact, Material, _fault, _quantity, _refuse_repeats, _Table, read, validated
 
 # "pair": two spheres fly at each other. "single": one sphere flies at a wall. "agglomerate": one made of all the spheres flies
 # at a wall. "cloud": spheres at random in a periodic block, with random velocities. "rain": spheres at random in a column above
@@ -294,27 +291,9 @@ def load(path: str | Path) -> Application:
     SceneError
         One line: file, table, key, rule, remedy.
     """
-    path = Path(path)
-    content = _content(path)
-    if "source" in content:
-        raise SceneError(f"{path}: unknown key 'source'. Remove it.")
-    try:
-        return Application.model_validate(_tuples(content | {"source": path.name}))
-    except ValidationError as error:
-        raise SceneError(f"{path}: {explain(error, content, Application)}") from error
+    return validated(Application, Path(path))
 
 
 def is_application(path: str | Path) -> bool:
     """Whether a scene file is one of many particles: it has [[particles]], where a scene of impacts has [impact]."""
-    return "particles" in _content(Path(path))
-
-
-def _content(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror}. Name a scene file or a shipped case.") from error
-    except UnicodeDecodeError as error:
-        raise SceneError(f"{path}: is not a text file in UTF-8. TOML needs that encoding.") from error
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"{path}: is not valid TOML: {error}") from error
+    return "particles" in read(Path(path))
